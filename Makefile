@@ -1,0 +1,164 @@
+# treeline: two commands are all a user needs, `make bench` and `make check`.
+#
+#   make                 builds ./treeline            config=release|debug|sanitize  CC=gcc|clang
+#   make bench           installs what is missing, builds, runs the quick benchmark, writes the report
+#   make check           every test: units, command line, architecture, gcc and clang, sanitizers, EGL alone
+#   make test            the unit tests of one configuration; make test T=test_option for one
+#   make install PREFIX= DESTDIR=      make format      make lint      make clean
+#   gl=auto|egl|osmesa   which GL back ends to build in; auto takes those that pkg-config finds
+
+SHELL := /bin/bash
+config ?= release
+gl ?= auto
+PREFIX ?= /usr/local
+ifeq ($(origin CC),default)
+CC := gcc
+endif
+CXX := $(if $(findstring clang,$(CC)),clang++,g++)
+
+BUILD := build/$(config)-$(notdir $(firstword $(CC)))$(if $(filter-out auto,$(gl)),-$(gl))
+GEN := $(BUILD)/gen
+
+# What the wall needs, found by pkg-config where it knows it.
+PKG := libcjson libxxhash assimp
+has = $(shell pkg-config --exists $(1) 2>/dev/null && echo yes)
+GL_OSMESA := $(if $(filter auto osmesa,$(gl)),$(call has,osmesa))
+GL_EGL := $(if $(filter auto egl,$(gl)),$(call has,egl))
+PKG += $(if $(GL_OSMESA),osmesa) $(if $(GL_EGL),egl)
+EMBREE := $(if $(wildcard /usr/include/embree4/rtcore.h),4,3)
+
+WARN := -Wall -Wextra -Wpedantic -Wshadow -Werror
+MODE_release := -O3 -g
+MODE_debug := -O0 -g
+MODE_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+MODE := $(MODE_$(config))
+ifeq ($(MODE),)
+$(error config=$(config) is not one of release, debug, sanitize)
+endif
+# -ffp-contract=off: the same forest and the same picture from every compiler.
+CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(WARN) $(MODE) -fPIC -fopenmp -ffp-contract=off -fno-math-errno \
+    -fvisibility=default -MMD -MP -Iharness -I$(GEN) -DCGLM_ALL_UNALIGNED \
+    -DTREELINE_PREFIX='"$(PREFIX)"' -DTREELINE_FLAGS='"$(MODE)"' -DEMBREE_VERSION=$(EMBREE) \
+    $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKG) cglm 2>/dev/null)) $(CFLAGS)
+CXXFLAGS_ALL := -std=c++17 $(WARN) $(MODE) -fPIC -Iharness \
+    $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenImageIO 2>/dev/null)) $(CXXFLAGS)
+LIBS := $(shell pkg-config --libs $(PKG) 2>/dev/null) -lmeshoptimizer -lembree$(EMBREE) -ldl -lm -lpthread
+LDFLAGS_ALL := $(MODE) -fopenmp -rdynamic $(LDFLAGS)
+
+# Sources. A GL back end, or the lack of one, is a file.
+WALL_SKIP := $(if $(GL_OSMESA),,harness/wall/gl_osmesa.c) $(if $(GL_EGL),,harness/wall/gl_egl.c)
+SOURCES := $(filter-out $(WALL_SKIP) harness/cli/treeline.c,$(sort $(wildcard harness/*/*.c))) \
+    $(sort $(wildcard methods/*.c))
+GENERATED_C := $(GEN)/methods_builtin.c $(GEN)/gl_load.c $(GEN)/gl_backends.c
+GENERATED_H := $(GEN)/gl_functions.inc \
+    $(patsubst methods/%.glsl,$(GEN)/%.glsl.h,$(wildcard methods/*.glsl)) \
+    $(patsubst harness/bake/%.glsl,$(GEN)/%.glsl.h,$(wildcard harness/bake/*.glsl))
+OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o) $(GENERATED_C:%.c=%.o)
+ARCHIVE := $(BUILD)/libtreeline.a
+BINARY := $(BUILD)/treeline
+IMAGE_SO := $(BUILD)/treeline_image.so
+TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(sort $(wildcard tests/test_*.c)))
+
+.PHONY: all bench check test install format lint clean packages
+.DELETE_ON_ERROR:
+
+all: $(BINARY) $(IMAGE_SO)
+	@ln -sfn $(BINARY) treeline
+
+$(BINARY): $(BUILD)/harness/cli/treeline.o $(ARCHIVE)
+	$(CC) $(LDFLAGS_ALL) -o $@ $< -Wl,--whole-archive $(ARCHIVE) -Wl,--no-whole-archive $(LIBS)
+
+$(IMAGE_SO): harness/wall/oiio.cpp harness/wall/oiio.h
+	@mkdir -p $(@D)
+	$(CXX) $(CXXFLAGS_ALL) -shared -o $@ $< $(shell pkg-config --libs OpenImageIO 2>/dev/null)
+
+$(ARCHIVE): $(OBJECTS)
+	@rm -f $@
+	@ar rcs $@ $^
+
+$(BUILD)/%.o: %.c | $(GENERATED_H)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -c -o $@ $<
+
+$(GEN)/%.o: $(GEN)/%.c | $(GENERATED_H)
+	$(CC) $(CFLAGS_ALL) -c -o $@ $<
+
+# Generated: the sorted list of methods, the GL loader, shaders as C text.
+$(GEN)/methods_builtin.c: $(wildcard methods/*.c) Makefile
+	@mkdir -p $(@D)
+	@{ echo '/* Generated from the file names in methods/. */'; echo '#include "method/method.h"'; \
+	names="$(sort $(patsubst methods/%.c,%,$(wildcard methods/*.c)))"; \
+	for n in $$names; do echo "extern const struct method $${n//-/_}_method;"; done; \
+	echo 'const struct method *const methods_builtin[] = {'; \
+	for n in $$names; do echo "    &$${n//-/_}_method,"; done; \
+	echo '    NULL,'; echo '};'; } > $@
+
+GLCOREARB := $(firstword $(wildcard /usr/include/GL/glcorearb.h))
+gl_names = awk '/^\#ifdef GL_VERSION_4_6|^\#ifndef GL_VERSION_4_6/ {exit} /^GLAPI .*APIENTRY gl/ \
+    {match($$0, /gl[A-Za-z0-9_]+ \(/); print substr($$0, RSTART + 2, RLENGTH - 4)}' $(GLCOREARB)
+$(GEN)/gl_functions.inc: $(GLCOREARB) Makefile
+	@mkdir -p $(@D)
+	@$(gl_names) | while read n; do echo "    PFNGL$${n^^}PROC $$n;"; done > $@
+$(GEN)/gl_load.c: $(GLCOREARB) Makefile
+	@mkdir -p $(@D)
+	@{ echo '/* Generated from glcorearb.h: name and place of every OpenGL 4.5 core function. */'; \
+	echo '#include "wall/gl_load.h"'; echo 'const struct gl_entry gl_entries[] = {'; \
+	$(gl_names) | while read n; do echo "    {\"gl$$n\", offsetof(struct gl, $$n)},"; done; \
+	echo '    {NULL, 0},'; echo '};'; } > $@
+GL_BACKENDS := $(if $(GL_OSMESA),gl_osmesa) $(if $(GL_EGL),gl_egl_surfaceless gl_egl_device)
+$(GEN)/gl_backends.c: Makefile
+	@mkdir -p $(@D)
+	@{ echo '/* Generated: the GL back ends of this build. */'; echo '#include "wall/gl_load.h"'; \
+	for b in $(GL_BACKENDS); do echo "extern const struct gl_backend $$b;"; done; \
+	echo 'const struct gl_backend *const gl_backend_list[] = {'; \
+	for b in $(GL_BACKENDS); do echo "    &$$b,"; done; \
+	echo '    NULL,'; echo '};'; } > $@
+to_c = { echo "static const char $(1)[] = {"; od -An -v -tx1 $(2) | sed 's/ \(..\)/0x\1,/g'; echo '0};'; }
+$(GEN)/%.glsl.h: methods/%.glsl Makefile
+	@mkdir -p $(@D)
+	@$(call to_c,$(subst -,_,$*)_glsl,$<) > $@
+$(GEN)/%.glsl.h: harness/bake/%.glsl Makefile
+	@mkdir -p $(@D)
+	@$(call to_c,$(subst -,_,$*)_glsl,$<) > $@
+
+# Tests: one program a file, against the archive.
+$(BUILD)/tests/%: tests/%.c $(ARCHIVE) | $(GENERATED_H)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -Itests $(shell pkg-config --cflags cmocka gsl 2>/dev/null) $(LDFLAGS_ALL) -o $@ $< \
+	    -Wl,--whole-archive $(ARCHIVE) -Wl,--no-whole-archive $(LIBS) -lcmocka -lgsl -lgslcblas
+
+T ?=
+test: $(if $(T),$(BUILD)/tests/$(T),$(TESTS)) all
+	@tests/run.sh $(BUILD) $(if $(T),$(BUILD)/tests/$(T),$(TESTS))
+
+packages:
+	@.ci/install
+
+bench:
+	@.ci/install
+	@$(MAKE) --no-print-directory all
+	@./treeline run quick --out results/quick-$$(date -u +%Y%m%d-%H%M%S) --report
+
+check:
+	@.ci/install check
+	@tests/check.sh
+
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/treeline $(DESTDIR)$(PREFIX)/share/treeline
+	install -m755 $(BINARY) $(DESTDIR)$(PREFIX)/bin/treeline
+	install -m755 $(IMAGE_SO) $(DESTDIR)$(PREFIX)/lib/treeline/
+	cp -r scenes reports/template $(DESTDIR)$(PREFIX)/share/treeline/
+
+FORMAT := $(shell git ls-files '*.c' '*.h' '*.cpp' 2>/dev/null)
+format:
+	clang-format -i $(FORMAT)
+
+lint: all
+	clang-tidy --quiet $(filter harness/% methods/%,$(SOURCES)) -- $(CFLAGS_ALL)
+	cppcheck --quiet --error-exitcode=1 --enable=warning,portability --inline-suppr \
+	    --suppress=missingIncludeSystem -Iharness -I$(GEN) harness methods
+
+clean:
+	rm -rf build treeline
+
+-include $(OBJECTS:.o=.d) $(TESTS:=.d) $(BUILD)/harness/cli/treeline.d
