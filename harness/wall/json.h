@@ -8,7 +8,8 @@
  *     double height = json_number(root, "height_m", 20, 0.1, 200);
  *     struct json *light = json_object(root, "light");              NULL when absent; getters accept NULL
  *     return json_end(doc);                                         unknown keys are errors
- */
+ *
+ * A key whose value is null counts as absent. */
 #ifndef TREELINE_WALL_JSON_H
 #define TREELINE_WALL_JSON_H
 
