@@ -129,7 +129,7 @@ $(BUILD)/tests/%: tests/%.c $(ARCHIVE) | $(GENERATED_H)
 
 T ?=
 test: $(if $(T),$(BUILD)/tests/$(T),$(TESTS)) all
-	@tests/run.sh $(BUILD) $(if $(T),$(BUILD)/tests/$(T),$(TESTS))
+	@tests/run.sh $(if $(T),$(BUILD)/tests/$(T),$(TESTS))
 
 packages:
 	@.ci/install
