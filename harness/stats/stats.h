@@ -10,6 +10,8 @@ struct interval {
     double value, low, high; /* estimate and 95 % interval; NaN where there is too little data */
 };
 
+/* Everywhere: NaN among the values counts as missing. */
+
 /* Sample median (mean of the middle two); NaN for n = 0. values is not changed. */
 double stats_median(const double *values, size_t count);
 double stats_quantile(const double *values, size_t count, double q); /* Hyndman-Fan type 7 */
@@ -37,7 +39,12 @@ struct power_law {
     struct interval b;
     double r2;
 };
+/* Fewer than 2 positive pairs, or all at one x: NaN; 2: no interval (NaN). */
 struct power_law stats_power_law(const double *x, const double *y, size_t count);
+
+/* Quantiles: p in [0, 1] (ends: infinite), degrees of freedom > 0; NaN outside. */
+double stats_normal_quantile(double p);
+double stats_student_quantile(double p, double degrees);
 
 /* Marks the points that no other point beats in both cost and error (lower is better); ties keep the first. */
 void stats_pareto(const double *cost, const double *error, size_t count, bool *on_front);
