@@ -77,23 +77,27 @@ static void test_stats__the_mad_of_a_normal_sample_is_its_standard_deviation(voi
     NEAR(stats_mad(values, 20000), 3, 0.1);
 }
 
-/* A median of 15 log-normal times: 95 % of the intervals must hold the true median. */
+/* A median of 15 log-normal times: 95 % of the intervals must hold the true median, and as many lie
+ * above as below. The bounds are three standard errors of a binomial count. */
 static void test_stats__the_bca_interval_covers_the_true_median(void **state)
 {
     (void)state;
-    enum { TRIALS = 1500, N = 15 };
+    enum { TRIALS = 2500, N = 15 };
     struct random random = random_seed(11, 0);
-    int covered = 0;
+    int above = 0, below = 0;
     for (int trial = 0; trial < TRIALS; trial++) {
         double values[N];
         for (int i = 0; i < N; i++)
             values[i] = exp(0.8 * gaussian(&random));
         struct interval interval = stats_median_interval(values, N, (uint64_t)trial);
         assert_true(interval.low <= interval.value && interval.value <= interval.high);
-        covered += interval.low <= 1 && 1 <= interval.high;
+        above += interval.low > 1;
+        below += interval.high < 1;
     }
-    double bound = 3 * sqrt(0.95 * 0.05 / TRIALS);
-    NEAR((double)covered / TRIALS, 0.95, bound);
+    double tail_bound = 3 * sqrt(0.025 * 0.975 / TRIALS);
+    NEAR((double)above / TRIALS, 0.025, tail_bound);
+    NEAR((double)below / TRIALS, 0.025, tail_bound);
+    NEAR(1 - (double)(above + below) / TRIALS, 0.95, 3 * sqrt(0.95 * 0.05 / TRIALS));
 }
 
 static void test_stats__the_same_seed_gives_the_same_interval(void **state)
