@@ -27,8 +27,10 @@ struct arena {
 static _Noreturn void over_budget(const struct arena *arena, size_t count, size_t size)
 {
     if (arena && arena->budget_bytes)
-        fprintf(stderr, "treeline: memory: %zu x %zu bytes more than %zu in use is over the budget of %zu\n",
-                count, size, arena->used_bytes, arena->budget_bytes);
+        fprintf(
+            stderr,
+            "treeline: memory: %zu x %zu bytes more than %zu in use is over the budget of %zu\n",
+            count, size, arena->used_bytes, arena->budget_bytes);
     else
         fprintf(stderr, "treeline: memory: the system has no %zu x %zu bytes more\n", count, size);
     fflush(NULL);

@@ -1,4 +1,5 @@
-/* Memory that lives as long as a cell (or a command): zeroed, 64-byte aligned, never NULL, never freed alone. */
+/* Memory that lives as long as a cell (or a command): zeroed, 64-byte aligned, never NULL, never
+ * freed alone. */
 #ifndef TREELINE_BASE_ARENA_H
 #define TREELINE_BASE_ARENA_H
 

@@ -1,4 +1,5 @@
-/* The disk cache: one file an entry, KIND-HASH, with size and checksum in front; torn entries do not exist. */
+/* The disk cache: one file an entry, KIND-HASH, with size and checksum in front; torn entries do
+ * not exist. */
 #include "base/file.h"
 #include "base/hash.h"
 
@@ -145,7 +146,8 @@ enum status cache_trim(size_t limit_bytes, size_t *removed_bytes, struct error *
     enum status status = STATUS_OK;
     for (long i = 0; i < count && total > limit_bytes; i++) {
         if (unlinkat(dirfd(folder), entries[i].name, 0) != 0) {
-            status = error_errno(error, STATUS_IO, "%s/%s: cannot be removed", path, entries[i].name);
+            status =
+                error_errno(error, STATUS_IO, "%s/%s: cannot be removed", path, entries[i].name);
             continue;
         }
         total -= entries[i].bytes;

@@ -1,4 +1,5 @@
-/* An error: a status and one clear line that names the file, the thing, the value and the allowance. */
+/* An error: a status and one clear line that names the file, the thing, the value and the
+ * allowance. */
 #ifndef TREELINE_BASE_ERROR_H
 #define TREELINE_BASE_ERROR_H
 

@@ -93,7 +93,7 @@ enum status file_append(const char *path, const void *data, size_t size, struct 
     int number = errno;
     /* A half-written record (full disk) is taken back, so that the file stays whole. */
     if (!good && before >= 0 && ftruncate(file, before) != 0)
-        number = errno;
+        before = -1; /* a device; the first error is the one to tell */
     close(file);
     errno = number;
     return good ? STATUS_OK : error_errno(error, STATUS_IO, "%s: cannot be written", path);

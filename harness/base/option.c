@@ -68,7 +68,8 @@ static int word_index(const char *words, const char *word, size_t length)
 
 static bool parse_bool(const char *text, double *value)
 {
-    static const char *const on[] = {"on", "1", "true", "yes"}, *const off[] = {"off", "0", "false", "no"};
+    static const char *const on[] = {"on", "1", "true", "yes"}, *const off[] = {"off", "0", "false",
+                                                                                "no"};
     for (size_t i = 0; i < 4; i++) {
         if (strcasecmp(text, on[i]) == 0) {
             *value = 1;
@@ -161,15 +162,16 @@ enum status options_parse(const struct option *table, const char *text, void *va
         char item[256];
         size_t length = strcspn(text, ",");
         if (length >= sizeof item)
-            return error_set(error, STATUS_INVALID, "option '%.40s...' is longer than %zu characters",
-                             text, sizeof item - 1);
+            return error_set(error, STATUS_INVALID,
+                             "option '%.40s...' is longer than %zu characters", text,
+                             sizeof item - 1);
         memcpy(item, text, length);
         item[length] = 0;
         text += length + (text[length] == ',');
         char *equals = strchr(item, '=');
         if (!equals)
-            return error_set(error, STATUS_INVALID, "option '%s' has no value; write %s=VALUE", item,
-                             item);
+            return error_set(error, STATUS_INVALID, "option '%s' has no value; write %s=VALUE",
+                             item, item);
         *equals = 0;
         enum status status = option_set(table, item, equals + 1, values, error);
         if (status != STATUS_OK)

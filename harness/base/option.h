@@ -1,4 +1,5 @@
-/* One table of typed options: parsing, defaults, ranges, help, documentation and canonical names. */
+/* One table of typed options: parsing, defaults, ranges, help, documentation and canonical names.
+ */
 #ifndef TREELINE_BASE_OPTION_H
 #define TREELINE_BASE_OPTION_H
 
@@ -35,8 +36,9 @@ struct option {
 /* Fills the struct with every option's default. table may be NULL (no options). */
 void options_default(const struct option *table, void *values);
 
-/* Sets one option. Errors (STATUS_INVALID): "views: 900 is outside 1..512", "alpha: 'x' is not one of
- * blend|test|coverage", "no option 'vews'; options are views, alpha" with the nearest name first. */
+/* Sets one option. Errors (STATUS_INVALID): "views: 900 is outside 1..512", "alpha: 'x' is not one
+ * of blend|test|coverage", "no option 'vews'; options are views, alpha" with the nearest name
+ * first. */
 enum status option_set(const struct option *table, const char *name, const char *value,
                        void *values, struct error *error);
 
@@ -44,8 +46,9 @@ enum status option_set(const struct option *table, const char *name, const char 
 enum status options_parse(const struct option *table, const char *text, void *values,
                           struct error *error);
 
-/* Canonical text of the options that differ from their defaults, in table order: "views=16,alpha=test".
- * Parses back to the same values. Returns the length that was needed, as snprintf does. */
+/* Canonical text of the options that differ from their defaults, in table order:
+ * "views=16,alpha=test". Parses back to the same values. Returns the length that was needed, as
+ * snprintf does. */
 size_t options_print(const struct option *table, const void *values, char *text, size_t size);
 
 /* One option's value as text ("on", "16", "0.5", "blend"); returns the length needed. */

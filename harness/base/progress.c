@@ -59,8 +59,8 @@ static void draw(struct progress *progress, const char *label, double now)
         memset(bar, '-', 20);
         memset(bar, '#', (size_t)full);
         bar[20] = 0;
-        fprintf(stderr, "\r\033[K%s [%s] %3.0f %%%s  %.60s", progress->title, bar, 100 * share, left,
-                label ? label : "");
+        fprintf(stderr, "\r\033[K%s [%s] %3.0f %%%s  %.60s", progress->title, bar, 100 * share,
+                left, label ? label : "");
     } else {
         fprintf(stderr, "%s: %.0f %%%s%s%s\n", progress->title, 100 * share, left,
                 label ? ", " : "", label ? label : "");

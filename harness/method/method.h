@@ -12,8 +12,9 @@
 
 /* What a method is and which effects it models. The low bits are EFFECT_*. */
 enum {
-    TRAIT_CPU = 1u << 16,        /* draws into target->pixels; workspace->gl is NULL */
-    TRAIT_STOCHASTIC = 1u << 17, /* its noise depends on the seed; still the same bytes for the same seed */
+    TRAIT_CPU = 1u << 16, /* draws into target->pixels; workspace->gl is NULL */
+    TRAIT_STOCHASTIC =
+        1u << 17, /* its noise depends on the seed; still the same bytes for the same seed */
 };
 
 /* Lives as long as the cell; nothing to free. */
@@ -21,18 +22,18 @@ struct workspace {
     struct arena *arena; /* all host memory, counted as host_bytes */
     struct gl *gl;       /* all GL objects, counted as device_bytes; NULL for a CPU method */
     struct error *error;
-    unsigned effects;    /* to draw: the scene's wanted ones that the method's traits have */
+    unsigned effects; /* to draw: the scene's wanted ones that the method's traits have */
     enum lod lod;
     enum target_format format; /* of every target that will come */
-    int threads;         /* that a CPU method may use, and llvmpipe uses */
+    int threads;               /* that a CPU method may use, and llvmpipe uses */
     uint64_t seed;
 };
 
-struct method {           /* its name is its file's name, '-' written '_' in C */
-    unsigned abi;         /* METHOD_ABI, first, so that an old plugin is refused */
-    const char *name;     /* as in `--method NAME` */
-    const char *summary;  /* one line, for list and docs */
-    const char *source;   /* authors, title, year, DOI */
+struct method {          /* its name is its file's name, '-' written '_' in C */
+    unsigned abi;        /* METHOD_ABI, first, so that an old plugin is refused */
+    const char *name;    /* as in `--method NAME` */
+    const char *summary; /* one line, for list and docs */
+    const char *source;  /* authors, title, year, DOI */
     unsigned traits;
     const struct option *options; /* ends with OPTION_END; NULL: none */
     size_t options_size;
@@ -41,17 +42,20 @@ struct method {           /* its name is its file's name, '-' written '_' in C *
     /* Everything that does not depend on the view; timed cold as build_seconds. */
     enum status (*prepare)(struct workspace *workspace, const struct scene *scene,
                            const void *options, void **state);
-    /* One picture: sky, terrain and trees, every pixel of target. Relights when view->sun_direction differs from
-     * the last call's. Must not wait for the GPU: the harness finishes and stops the clock. */
+    /* One picture: sky, terrain and trees, every pixel of target. Relights when view->sun_direction
+     * differs from the last call's. Must not wait for the GPU: the harness finishes and stops the
+     * clock. */
     enum status (*draw)(struct workspace *workspace, void *state, const struct view *view,
                         struct target *target);
 };
 
-/* The methods built in, sorted by name; generated from the file names in methods/. Ends with NULL. */
+/* The methods built in, sorted by name; generated from the file names in methods/. Ends with NULL.
+ */
 extern const struct method *const methods_builtin[];
 
-/* A built-in method by name, or a plugin by the path of its shared object (a name with '/' or ".so").
- * STATUS_NOT_FOUND names the nearest; an object built for another ABI, or without the symbol, is STATUS_INVALID. */
+/* A built-in method by name, or a plugin by the path of its shared object (a name with '/' or
+ * ".so"). STATUS_NOT_FOUND names the nearest; an object built for another ABI, or without the
+ * symbol, is STATUS_INVALID. */
 enum status method_find(const char *name, const struct method **method, struct error *error);
 
 #endif

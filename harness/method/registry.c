@@ -64,7 +64,7 @@ enum status method_find(const char *name, const struct method **method, struct e
         }
         nearest = nearest_of(name, nearest, (*each)->name);
     }
-    return error_set(error, STATUS_NOT_FOUND,
-                     "no method '%s'%s%s%s; `treeline list methods` has them all", name,
-                     nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+    return error_set(
+        error, STATUS_NOT_FOUND, "no method '%s'%s%s%s; `treeline list methods` has them all", name,
+        nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
 }

@@ -1,4 +1,5 @@
-/* Strict JSON reading: cJSON parses, our own nodes remember their place and which keys were asked for. */
+/* Strict JSON reading: cJSON parses, our own nodes remember their place and which keys were asked
+ * for. */
 #include "wall/json.h"
 
 #include "base/file.h"
@@ -15,8 +16,8 @@
 enum { NESTING_MAX = 64, FILE_BYTES_MAX = 256 << 20 };
 
 enum json_type { JSON_NULL, JSON_BOOL, JSON_NUMBER, JSON_TEXT, JSON_ARRAY, JSON_OBJECT };
-static const char *const type_words[] = {"null", "true or false", "a number",
-                                         "a text", "a list", "an object"};
+static const char *const type_words[] = {"null",   "true or false", "a number",
+                                         "a text", "a list",        "an object"};
 
 struct json {
     struct json_doc *doc;
@@ -176,7 +177,8 @@ enum status json_end(struct json_doc *doc)
     return doc->status;
 }
 
-/* The child, marked as asked for; NULL when absent or null, after an error, or when object is NULL. */
+/* The child, marked as asked for; NULL when absent or null, after an error, or when object is NULL.
+ */
 static struct json *child_get(struct json *object, const char *key)
 {
     if (!object || object->doc->status != STATUS_OK || object->type != JSON_OBJECT)

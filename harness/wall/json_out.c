@@ -1,4 +1,5 @@
-/* JSON writing: a growing text in an arena. Strings are escaped by cJSON's rules; doubles read back exactly. */
+/* JSON writing: a growing text in an arena. Strings are escaped by cJSON's rules; doubles read back
+ * exactly. */
 #include "wall/json.h"
 
 #include <inttypes.h>
