@@ -24,7 +24,8 @@ PKG := libcjson libxxhash assimp
 has = $(shell pkg-config --exists $(1) 2>/dev/null && echo yes)
 GL_OSMESA := $(if $(filter auto osmesa,$(gl)),$(call has,osmesa))
 GL_EGL := $(if $(filter auto egl,$(gl)),$(call has,egl))
-PKG += $(if $(GL_OSMESA),osmesa) $(if $(GL_EGL),egl)
+# The back ends open their libraries at run time: only their headers are needed to build.
+PKG_HEADERS := $(PKG) cglm $(if $(GL_OSMESA),osmesa) $(if $(GL_EGL),egl)
 EMBREE := $(if $(wildcard /usr/include/embree4/rtcore.h),4,3)
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Werror
@@ -39,7 +40,7 @@ endif
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(WARN) $(MODE) -fPIC -fopenmp -ffp-contract=off -fno-math-errno \
     -fvisibility=default -MMD -MP -Iharness -I$(GEN) -DCGLM_ALL_UNALIGNED \
     -DTREELINE_PREFIX='"$(PREFIX)"' -DTREELINE_FLAGS='"$(MODE)"' -DEMBREE_VERSION=$(EMBREE) \
-    $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKG) cglm 2>/dev/null)) $(CFLAGS)
+    $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKG_HEADERS) 2>/dev/null)) $(CFLAGS)
 CXXFLAGS_ALL := -std=c++17 $(WARN) $(MODE) -fPIC -Iharness \
     $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenImageIO 2>/dev/null)) $(CXXFLAGS)
 LIBS := $(shell pkg-config --libs $(PKG) 2>/dev/null) -lmeshoptimizer -lembree$(EMBREE) -ldl -lm -lpthread
@@ -61,6 +62,7 @@ TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(sort $(wildcard tests/test_*.c)
 
 .PHONY: all bench check test install format lint clean packages
 .DELETE_ON_ERROR:
+.SECONDARY: $(GENERATED_C) $(GENERATED_H)
 
 all: $(BINARY) $(IMAGE_SO)
 	@ln -sfn $(BINARY) treeline
@@ -111,7 +113,9 @@ $(GEN)/gl_backends.c: Makefile
 	@{ echo '/* Generated: the GL back ends of this build. */'; echo '#include "wall/gl_load.h"'; \
 	for b in $(GL_BACKENDS); do echo "extern const struct gl_backend $$b;"; done; \
 	echo 'const struct gl_backend *const gl_backend_list[] = {'; \
-	for b in $(GL_BACKENDS); do echo "    &$$b,"; done; \
+	for b in $(GL_BACKENDS); do echo "    &$$b,"; done; echo '    NULL,'; echo '};'; \
+	echo 'const char *const gl_backends[] = {'; \
+	for b in $(GL_BACKENDS); do n=$${b#gl_}; echo "    \"$${n//_/-}\","; done; \
 	echo '    NULL,'; echo '};'; } > $@
 to_c = { echo "static const char $(1)[] = {"; od -An -v -tx1 $(2) | sed 's/ \(..\)/0x\1,/g'; echo '0};'; }
 $(GEN)/%.glsl.h: methods/%.glsl Makefile
