@@ -1,0 +1,226 @@
+/* Sky and terrain under every GL method. The terrain is the mesh that the reference traces, cut
+ * into square chunks that are culled one by one; the sky is a triangle behind everything, at pixel
+ * centres. */
+#include "bake/backdrop.h"
+#include "bake/cull.h"
+
+#include "backdrop.glsl.h"
+
+#include <string.h>
+
+/* Quads along the side of a chunk: 2,048 triangles. */
+enum { CHUNK_SIDE = 32 };
+
+struct chunk {
+    size_t first_index;
+    uint32_t indices_count;
+    float center_m[3], radius_m;
+};
+
+struct backdrop {
+    const struct scene *scene;
+    GLuint sky_program, sky_vertices; /* an empty vertex array */
+    GLuint terrain_program, terrain_vertices;
+    size_t chunks_count;
+    struct chunk *chunks;
+};
+
+/* Copies the triangles of one chunk's quads behind each other. The mesh has two triangles a quad,
+ * row by row. */
+static struct chunk fill_chunk(const struct mesh *mesh, const struct terrain *terrain,
+                               uint32_t quad_x, uint32_t quad_z, uint32_t *indices, size_t first)
+{
+    uint32_t quads_x = terrain->samples_x - 1, quads_z = terrain->samples_z - 1;
+    uint32_t end_x = quad_x + CHUNK_SIDE < quads_x ? quad_x + CHUNK_SIDE : quads_x;
+    uint32_t end_z = quad_z + CHUNK_SIDE < quads_z ? quad_z + CHUNK_SIDE : quads_z;
+    struct chunk chunk = {.first_index = first};
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t z = quad_z; z < end_z; z++) {
+        size_t from = 2 * ((size_t)z * quads_x + quad_x), count = 6 * (size_t)(end_x - quad_x);
+        const uint32_t *corners = mesh->triangles[from];
+        memcpy(indices + first + chunk.indices_count, corners, count * sizeof *indices);
+        chunk.indices_count += (uint32_t)count;
+        for (size_t i = 0; i < count; i++)
+            for (int axis = 0; axis < 3; axis++) {
+                low[axis] = fminf(low[axis], mesh->positions[corners[i]][axis]);
+                high[axis] = fmaxf(high[axis], mesh->positions[corners[i]][axis]);
+            }
+    }
+    float square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        float half = 0.5f * (high[axis] - low[axis]);
+        chunk.center_m[axis] = low[axis] + half;
+        square += half * half;
+    }
+    chunk.radius_m = sqrtf(square) * 1.0001f;
+    return chunk;
+}
+
+/* Cuts the whole grid; returns the number of indices filled. */
+static size_t fill_chunks(struct arena *arena, const struct mesh *mesh,
+                          const struct terrain *terrain, struct backdrop *backdrop,
+                          uint32_t *indices)
+{
+    uint32_t quads_x = terrain->samples_x - 1, quads_z = terrain->samples_z - 1;
+    uint32_t chunks_x = (quads_x + CHUNK_SIDE - 1) / CHUNK_SIDE;
+    uint32_t chunks_z = (quads_z + CHUNK_SIDE - 1) / CHUNK_SIDE;
+    size_t filled = 0;
+    backdrop->chunks = ARENA_ARRAY(arena, struct chunk, (size_t)chunks_x * chunks_z);
+    for (uint32_t z = 0; z < chunks_z; z++)
+        for (uint32_t x = 0; x < chunks_x; x++) {
+            struct chunk *chunk = &backdrop->chunks[backdrop->chunks_count++];
+            *chunk = fill_chunk(mesh, terrain, x * CHUNK_SIDE, z * CHUNK_SIDE, indices, filled);
+            filled += chunk->indices_count;
+        }
+    return filled;
+}
+
+static enum status prepare_terrain(struct workspace *workspace, const struct scene *scene,
+                                   struct backdrop *backdrop)
+{
+    struct gl *gl = workspace->gl;
+    const struct mesh *mesh = terrain_mesh(workspace->arena, &scene->terrain);
+    if (!mesh)
+        return STATUS_OK;
+    uint32_t *indices = ARENA_ARRAY(workspace->arena, uint32_t, 3 * mesh->triangles_count);
+    size_t filled = fill_chunks(workspace->arena, mesh, &scene->terrain, backdrop, indices);
+    if (filled != 3 * mesh->triangles_count)
+        return error_set(workspace->error, STATUS_INTERNAL,
+                         "terrain: %zu triangles do not tile %u x %u samples",
+                         mesh->triangles_count, scene->terrain.samples_x, scene->terrain.samples_z);
+    size_t plane = mesh->vertices_count * sizeof *mesh->positions;
+    GLuint positions = gl_buffer(gl, (GLsizeiptr)plane, mesh->positions, 0);
+    GLuint normals = gl_buffer(gl, (GLsizeiptr)plane, mesh->normals, 0);
+    GLuint elements = gl_buffer(gl, (GLsizeiptr)(filled * sizeof *indices), indices, 0);
+    GLuint array = backdrop->terrain_vertices = gl_vertex_array(gl);
+    GLuint planes[2] = {positions, normals};
+    for (GLuint i = 0; i < 2; i++) {
+        gl->VertexArrayVertexBuffer(array, i, planes[i], 0, sizeof *mesh->positions);
+        gl->VertexArrayAttribFormat(array, i, 3, GL_FLOAT, GL_FALSE, 0);
+        gl->VertexArrayAttribBinding(array, i, i);
+        gl->EnableVertexArrayAttrib(array, i);
+    }
+    gl->VertexArrayElementBuffer(array, elements);
+    return gl_program(gl, "terrain", backdrop_glsl, NULL, &backdrop->terrain_program,
+                      workspace->error);
+}
+
+enum status backdrop_prepare(struct workspace *workspace, const struct scene *scene,
+                             struct backdrop **backdrop)
+{
+    struct gl *gl = workspace->gl;
+    struct backdrop *made = *backdrop = ARENA_NEW(workspace->arena, struct backdrop);
+    made->scene = scene;
+    made->sky_vertices = gl_vertex_array(gl);
+    enum status status =
+        gl_program(gl, "sky", backdrop_glsl, "SKY 1", &made->sky_program, workspace->error);
+    if (status == STATUS_OK)
+        status = prepare_terrain(workspace, scene, made);
+    return status == STATUS_OK ? gl_check(gl, "backdrop", workspace->error) : status;
+}
+
+/* Above a height field and within its borders the first thing that a ray meets is a front face. */
+static bool eye_is_above(const struct terrain *terrain, const float eye_m[3])
+{
+    return fabsf(eye_m[0]) <= 0.5f * terrain->size_x_m &&
+           fabsf(eye_m[2]) <= 0.5f * terrain->size_z_m &&
+           eye_m[1] > terrain_height(terrain, eye_m[0], eye_m[2]);
+}
+
+static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
+                         const struct view *view)
+{
+    struct gl *gl = workspace->gl;
+    const struct scene *scene = backdrop->scene;
+    GLuint program = backdrop->terrain_program;
+    if (backdrop->chunks_count == 0)
+        return;
+    gl->UseProgram(program);
+    gl->BindVertexArray(backdrop->terrain_vertices);
+    shade_uniforms(workspace, program, scene, view);
+    gl->Uniform3fv(gl_uniform(gl, program, "albedo"), 1, scene->terrain.albedo);
+    if (eye_is_above(&scene->terrain, view->eye_m))
+        gl->Enable(GL_CULL_FACE);
+    /* Neighbouring chunks that are seen go in one call. */
+    size_t first = 0, count = 0;
+    for (size_t i = 0; i <= backdrop->chunks_count; i++) {
+        const struct chunk *chunk = &backdrop->chunks[i];
+        bool seen =
+            i < backdrop->chunks_count && view_sees_sphere(view, chunk->center_m, chunk->radius_m);
+        if (seen) {
+            first = count ? first : chunk->first_index;
+            count += chunk->indices_count;
+        } else if (count) {
+            gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT,
+                             first * sizeof(uint32_t), 1, 0, 0);
+            count = 0;
+        }
+    }
+    gl->Disable(GL_CULL_FACE);
+}
+
+static void draw_sky(struct workspace *workspace, const struct backdrop *backdrop,
+                     const struct view *view)
+{
+    struct gl *gl = workspace->gl;
+    const struct sky *sky = &backdrop->scene->sky;
+    GLuint program = backdrop->sky_program;
+    float up = tanf(0.5f * view->fov_y_rad);
+    float right = up * (float)view->width_px / (float)view->height_px;
+    static const float corners[3][2] = {{-1, -1}, {3, -1}, {-1, 3}};
+    float rays[3][3];
+    for (int corner = 0; corner < 3; corner++)
+        for (int axis = 0; axis < 3; axis++)
+            rays[corner][axis] = view->forward[axis] +
+                                 corners[corner][0] * right * view->right[axis] +
+                                 corners[corner][1] * up * view->up[axis];
+    gl->UseProgram(program);
+    gl->BindVertexArray(backdrop->sky_vertices);
+    gl->Uniform3fv(gl_uniform(gl, program, "corner_rays"), 3, rays[0]);
+    gl->Uniform3fv(gl_uniform(gl, program, "zenith"), 1, sky->zenith);
+    gl->Uniform3fv(gl_uniform(gl, program, "horizon"), 1, sky->horizon);
+    gl->Uniform3fv(gl_uniform(gl, program, "ground"), 1, sky->ground);
+    gl->DepthMask(GL_FALSE);
+    gl->DepthFunc(GL_LEQUAL);
+    gl_draw_arrays(gl, GL_TRIANGLES, 0, 3, 1);
+    gl->DepthFunc(GL_LESS);
+    gl->DepthMask(GL_TRUE);
+}
+
+void backdrop_draw(struct workspace *workspace, struct backdrop *backdrop, const struct view *view)
+{
+    struct gl *gl = workspace->gl;
+    gl->Viewport(0, 0, view->width_px, view->height_px);
+    gl->Disable(GL_SCISSOR_TEST);
+    gl->Disable(GL_BLEND);
+    gl->Disable(GL_CULL_FACE);
+    gl->Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    gl->Enable(GL_DEPTH_TEST);
+    gl->DepthFunc(GL_LESS);
+    gl->DepthMask(GL_TRUE);
+    gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl->ClearColor(0, 0, 0, 0);
+    gl->ClearDepth(1);
+    gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    draw_terrain(workspace, backdrop, view);
+    draw_sky(workspace, backdrop, view);
+}
+
+void shade_uniforms(struct workspace *workspace, GLuint program, const struct scene *scene,
+                    const struct view *view)
+{
+    struct gl *gl = workspace->gl;
+    static const float none[3] = {0, 0, 0};
+    unsigned effects = workspace->effects;
+    const float *ambient = effects & EFFECT_AMBIENT ? scene->ambient : none;
+    gl->UniformMatrix4fv(gl_uniform(gl, program, "view_projection"), 1, GL_FALSE,
+                         view->view_projection[0]);
+    gl->Uniform3fv(gl_uniform(gl, program, "eye_m"), 1, view->eye_m);
+    gl->Uniform3fv(gl_uniform(gl, program, "sun_direction"), 1, view->sun_direction);
+    gl->Uniform3fv(gl_uniform(gl, program, "sun_radiance"), 1, scene->sun.radiance);
+    gl->Uniform3fv(gl_uniform(gl, program, "ambient"), 1, ambient);
+    gl->Uniform3fv(gl_uniform(gl, program, "fog_color"), 1, scene->fog.color);
+    gl->Uniform1f(gl_uniform(gl, program, "fog_density"),
+                  effects & EFFECT_FOG ? scene->fog.density_per_m : 0);
+    gl->Uniform1i(gl_uniform(gl, program, "two_sided"), (effects & EFFECT_TWO_SIDED) != 0);
+}

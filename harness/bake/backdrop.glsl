@@ -1,0 +1,50 @@
+// Sky and terrain. SKY: one triangle over the picture; else the terrain's mesh.
+#pragma stage vertex
+#ifdef SKY
+uniform vec3 corner_rays[3];  // directions through (-1,-1), (3,-1), (-1,3) in clip space, not unit
+out vec3 ray;
+
+void main()
+{
+    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    ray = corner_rays[gl_VertexID];
+    gl_Position = vec4(corner, 1.0, 1.0);  // at the far end: only where no terrain is
+}
+#else
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+out vec3 position_m;
+out vec3 shading_normal;
+
+void main()
+{
+    position_m = position;
+    shading_normal = normal;
+    gl_Position = view_projection * vec4(position, 1.0);
+}
+#endif
+
+#pragma stage fragment
+layout(location = 0) out vec4 color;
+#ifdef SKY
+uniform vec3 zenith, horizon, ground;
+in vec3 ray;
+
+// sky_radiance() of harness/scene/scene.h
+void main()
+{
+    float y = normalize(ray).y;
+    color = vec4(y >= 0.0 ? mix(horizon, zenith, sqrt(y))
+                          : mix(horizon, ground, min(1.0, -8.0 * y)), 0.0);
+}
+#else
+uniform vec3 albedo;
+in vec3 position_m;
+in vec3 shading_normal;
+
+void main()
+{
+    vec3 radiance = shade_bark(albedo, shading_normal, gl_FrontFacing);
+    color = vec4(shade_fog(radiance, position_m), 0.0);
+}
+#endif
