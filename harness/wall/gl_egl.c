@@ -168,12 +168,13 @@ static enum status create_device(bool want_gpu, void **context, struct error *er
     return create("egl-device", open_device, want_gpu, context, error);
 }
 
+/* The display stays initialised until the process ends: it is shared, the next context wants it
+ * again, and terminating it would unload the driver. */
 static void destroy(void *context)
 {
     struct egl *egl = context;
     egl->make_current(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     egl->destroy_context(egl->display, egl->context);
-    egl->terminate(egl->display);
     egl->release_thread();
     free(egl);
 }
