@@ -1,8 +1,8 @@
 /* From a soup of triangles to a plant's mesh: placed, classified, welded, ordered by part and leaf.
  *
- * 1. axes turned to +y up, scaled to the height wanted, foot moved to the origin;
- * 2. each material is bark or leaf;
- * 3. vertices of equal position are one point; triangles without area are dropped;
+ * 1. each material is bark or leaf;
+ * 2. vertices of equal position are one point; triangles without area are dropped;
+ * 3. axes turned to +y up, scaled to the height wanted, foot moved to the origin;
  * 4. triangles that share points make one leaf (union by size, path halving: Tarjan 1975,
  *    doi:10.1145/321879.321884);
  * 5. bark parts, then leaf parts, a leaf's triangles side by side;
@@ -38,6 +38,7 @@ static bool is_leaf(const struct convert *convert, size_t triangle)
     return convert->mesh->materials[material].kind == MATERIAL_LEAF;
 }
 
+/* From +z up to +y up. */
 static void turn(float v[3])
 {
     float y = v[1];
@@ -45,49 +46,12 @@ static void turn(float v[3])
     v[2] = -y;
 }
 
-/* The middle of the foot: the mean of the vertices in the lowest 2 % of the height. */
-static void place(struct convert *convert, double low, double high)
+static void turn_soup(struct import_soup *soup)
 {
-    struct import_soup *soup = convert->soup;
-    double limit = low + 0.02 * (high - low), x = 0, z = 0;
-    size_t count = 0;
-    for (size_t i = 0; i < soup->vertices_count; i++)
-        if ((double)soup->positions[i][1] <= limit) {
-            x += (double)soup->positions[i][0];
-            z += (double)soup->positions[i][2];
-            count++;
-        }
-    double wanted = convert->request->height_m;
-    double scale = wanted > 0 ? wanted / (high - low) : 1;
-    double foot[3] = {x / (double)count, low, z / (double)count};
-    for (size_t i = 0; i < soup->vertices_count; i++)
-        for (int k = 0; k < 3; k++)
-            soup->positions[i][k] = (float)(((double)soup->positions[i][k] - foot[k]) * scale);
-}
-
-static enum status place_soup(struct convert *convert)
-{
-    struct import_soup *soup = convert->soup;
-    double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < soup->vertices_count; i++) {
-        if (convert->request->z_up) {
-            turn(soup->positions[i]);
-            turn(soup->normals[i]);
-        }
-        low = fmin(low, (double)soup->positions[i][1]);
-        high = fmax(high, (double)soup->positions[i][1]);
+        turn(soup->positions[i]);
+        turn(soup->normals[i]);
     }
-    if (!(high - low > 0) || !(high - low < 1e30))
-        return error_set(convert->error, STATUS_INVALID,
-                         "%s: is %g high; a plant's height is above 0 (is the up axis right?)",
-                         convert->request->path, high - low);
-    place(convert, low, high);
-    double scaled = convert->request->height_m > 0 ? convert->request->height_m : high - low;
-    if (!(scaled >= 1e-3 && scaled <= 1000))
-        return error_set(convert->error, STATUS_INVALID,
-                         "%s: would be %g m high; allowed: 0.001..1000 (set height_m)",
-                         convert->request->path, scaled);
-    return STATUS_OK;
 }
 
 /* True when the name holds one of the comma-separated words, in any case. */
@@ -214,7 +178,7 @@ static bool has_area(const struct convert *convert, size_t triangle)
         longest = fmax(longest, length3(edge));
     }
     double area = length3(cross);
-    return area > 1e-7 * longest * longest && area > 1e-30;
+    return area > 1e-7 * longest * longest;
 }
 
 static enum status drop_degenerate(struct convert *convert, size_t *kept)
@@ -233,6 +197,59 @@ static enum status drop_degenerate(struct convert *convert, size_t *kept)
     if (*kept < count)
         fprintf(stderr, "treeline: %s: %zu of %zu triangles have no area and were dropped\n",
                 convert->request->path, count - *kept, count);
+    return STATUS_OK;
+}
+
+/* Marks the points that the kept triangles use, one vertex for each position. */
+static bool *used_points(const struct convert *convert)
+{
+    const struct import_soup *soup = convert->soup;
+    bool *used = ARENA_ARRAY(convert->scratch, bool, soup->vertices_count);
+    for (size_t i = 0; i < soup->triangles_count; i++)
+        for (int k = 0; k < 3 && convert->keep[i]; k++)
+            used[convert->point[soup->triangles[i][k]]] = true;
+    return used;
+}
+
+/* Foot: the mean of the points in the lowest 2 % of the height. */
+static void place(struct convert *convert, const bool *used, double low, double high)
+{
+    struct import_soup *soup = convert->soup;
+    double limit = low + 0.02 * (high - low), x = 0, z = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < soup->vertices_count; i++)
+        if (used[i] && (double)soup->positions[i][1] <= limit) {
+            x += (double)soup->positions[i][0];
+            z += (double)soup->positions[i][2];
+            count++;
+        }
+    double wanted = convert->request->height_m;
+    double scale = wanted > 0 ? wanted / (high - low) : 1;
+    double foot[3] = {x / (double)count, low, z / (double)count};
+    for (size_t i = 0; i < soup->vertices_count; i++)
+        for (int k = 0; k < 3; k++)
+            soup->positions[i][k] = (float)(((double)soup->positions[i][k] - foot[k]) * scale);
+}
+
+static enum status place_soup(struct convert *convert)
+{
+    const struct import_soup *soup = convert->soup;
+    const bool *used = used_points(convert);
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < soup->vertices_count; i++) {
+        low = used[i] ? fmin(low, (double)soup->positions[i][1]) : low;
+        high = used[i] ? fmax(high, (double)soup->positions[i][1]) : high;
+    }
+    double scaled = convert->request->height_m > 0 ? convert->request->height_m : high - low;
+    if (!(high - low > 0))
+        return error_set(convert->error, STATUS_INVALID,
+                         "%s: is flat: 0 high along its up axis; allowed: above 0",
+                         convert->request->path);
+    if (!(scaled >= 1e-3 && scaled <= 1000))
+        return error_set(convert->error, STATUS_INVALID,
+                         "%s: is %g m high; allowed: 0.001..1000 (height_m scales it)",
+                         convert->request->path, scaled);
+    place(convert, used, low, high);
     return STATUS_OK;
 }
 
@@ -436,14 +453,16 @@ enum status import_convert(struct arena *arena, const struct import_request *req
     struct convert convert = {.arena = arena, .request = request, .soup = soup, .error = error};
     convert.mesh = ARENA_NEW(arena, struct mesh);
     size_t kept = 0;
-    enum status status = place_soup(&convert);
-    if (status == STATUS_OK)
-        status = classify(&convert, textures, has_holes);
+    enum status status = classify(&convert, textures, has_holes);
     if (status != STATUS_OK)
         return status;
     convert.scratch = arena_create(0);
+    if (request->z_up)
+        turn_soup(soup);
     weld(&convert);
     status = drop_degenerate(&convert, &kept);
+    if (status == STATUS_OK)
+        status = place_soup(&convert);
     if (status == STATUS_OK) {
         connect_leaves(&convert);
         make_parts(&convert, kept);

@@ -36,8 +36,10 @@ struct options {
 static const struct option table[] = {
     OPTION(struct options, height, 15, 4, 40, "m", "height of the tree"),
     OPTION(struct options, width, 16, 3, 50, "m", "diameter of the crown"),
-    OPTION(struct options, leaf_length, 0.19, 0.02, 1, "m", "mean length of a leaf; a leaf stands for a small spray, a real one is half as long"),
-    OPTION(struct options, triangles, 100000, 40000, 4000000, "", "triangles of bark and leaves together; leaves come in pairs of triangles, so an odd one is left out"),
+    OPTION(struct options, leaf_length, 0.19, 0.02, 1, "m",
+           "mean length of a leaf; each stands for a small spray, a real one is half as long"),
+    OPTION(struct options, triangles, 100000, 40000, 4000000, "",
+           "triangles of bark and leaves together; leaves have two, so an odd one is left out"),
     OPTION(struct options, seed, 1, 0, 1000000, "", "another tree for each"),
     OPTION_END,
 };

@@ -28,7 +28,8 @@ static const struct option table[] = {
     OPTION(struct options, height, 20, 5, 40, "m", "height of the tree"),
     OPTION(struct options, width, 3.4, 0.5, 12, "m", "diameter of the crown"),
     OPTION(struct options, leaf_length, 0.08, 0.02, 0.5, "m", "mean length of a leaf"),
-    OPTION(struct options, triangles, 98286, 30000, 4000000, "", "triangles of bark and leaves together; leaves come in pairs of triangles, so an odd one is left out"),
+    OPTION(struct options, triangles, 98286, 30000, 4000000, "",
+           "triangles of bark and leaves together; leaves have two, so an odd one is left out"),
     OPTION(struct options, seed, 1, 0, 1000000, "", "another tree for each"),
     OPTION_END,
 };
