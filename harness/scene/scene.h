@@ -63,7 +63,8 @@ struct camera_key {
 
 /* Keys already in metres (JSON may give them in units of the forest's half side). still: 1 key; orbit: 1 key, the
  * eye turns around the target by turn_rad; walk, fly-over, approach: straight from first to last key (approach in
- * equal ratios of distance to the target); keys: Catmull-Rom through all. clearance_m keeps the eye above the
+ * equal ratios of distance to the target; walk keeps the eye's height above the ground, which changes evenly
+ * from the first key's to the last's); keys: Catmull-Rom through all. clearance_m keeps the eye above the
  * terrain. */
 struct camera_path {
     enum path_kind kind;
@@ -82,7 +83,7 @@ struct scene {
     int width_px, height_px;
     unsigned effects; /* wanted */
     size_t species_count;
-    struct species *species;
+    struct species *species; /* those that have at least one instance */
     size_t instances_count;
     struct instance *instances;
     float forest_half_m; /* half side of the square that holds the trees' feet */
@@ -93,6 +94,7 @@ struct scene {
     struct fog fog;
     struct camera_path camera;
     float minimum_m[3], maximum_m[3]; /* of terrain and feet; trees rise above */
+    float tree_reach_m; /* no tree's vertex is farther from its foot, by the species' reach_m in scene.json */
     uint64_t hash; /* of all that can change a picture except effects, view and size: placement, plants (by
                       parameters or file bytes), terrain, light, sky, fog */
 };
@@ -138,7 +140,8 @@ struct view {
 void view_at(const struct scene *scene, double time, struct view *view);
 /* The time of frame k of n: k / n on a closed orbit, k / (n - 1) elsewhere, 0 when n is 1. */
 double path_time(const struct scene *scene, size_t frame, size_t frames_count);
-/* An arbitrary camera (tests, `render --eye --target`). */
+/* An arbitrary camera (tests, `render --eye --target`), the sun as at time 0. near and far are the path's, or farther
+ * apart where this view needs it. Looking straight down, the picture's top is -z; straight up, +z. */
 void view_look_at(const struct scene *scene, const float eye_m[3], const float target_m[3],
                   struct view *view);
 

@@ -1,0 +1,149 @@
+/* scene.json: plants, placement, terrain. */
+#include "scene/describe.h"
+
+#include <string.h>
+
+static const double REQUIRED = (double)NAN;
+
+static const float *describe_albedo(struct arena *arena, struct json *object, const char *key)
+{
+    float albedo[3] = {0, 0, 0};
+    if (!json_vector(object, key, albedo, 3, 0, 1))
+        return NULL;
+    float *kept = ARENA_ARRAY(arena, float, 3);
+    memcpy(kept, albedo, sizeof albedo);
+    return kept;
+}
+
+static void describe_import(struct arena *arena, struct json *plant, struct plant_entry *entry)
+{
+    struct json *import = json_object(plant, "import");
+    entry->import.height_m = json_number(import, "height_m", 0, 0, 1000);
+    entry->import.z_up = json_bool(import, "z_up", false);
+    entry->import.leaf = json_text(import, "leaf", NULL);
+    entry->import.leaf_albedo = describe_albedo(arena, import, "leaf_albedo");
+    entry->import.bark_albedo = describe_albedo(arena, import, "bark_albedo");
+    if (import && !entry->file)
+        json_fail(plant, "import", "stands without a file; allowed: together with file");
+}
+
+static void describe_plant(struct arena *arena, struct json *plant, struct plant_entry *entry,
+                           const char *scene_path)
+{
+    entry->generator = json_text(plant, "generator", NULL);
+    entry->options = json_text(plant, "options", NULL);
+    entry->file = describe_path(arena, scene_path, json_text(plant, "file", NULL));
+    if (!entry->generator == !entry->file)
+        json_fail(plant, "generator", "%s; allowed: either a generator or a file",
+                  entry->file ? "stands beside a file" : "is missing, and so is a file");
+    if (entry->file && entry->options)
+        json_fail(plant, "options", "value is '%.64s'; allowed: with a generator only",
+                  entry->options);
+    describe_import(arena, plant, entry);
+    const char *fallback = entry->generator ? entry->generator : json_text(plant, "file", "");
+    entry->name = json_text(plant, "name", fallback);
+    entry->weight = (float)json_number(plant, "weight", 1, 0, 1e6);
+    entry->scale[0] = entry->scale[1] = 1;
+    json_vector(plant, "scale", entry->scale, 2, 0.001, 1000);
+    if (entry->scale[0] > entry->scale[1])
+        json_fail(plant, "scale", "value is [%g, %g]; allowed: the smaller one first",
+                  (double)entry->scale[0], (double)entry->scale[1]);
+    double reach_m = entry->import.height_m > 0 ? 1.5 * entry->import.height_m : 40;
+    entry->reach_m = (float)json_number(plant, "reach_m", reach_m, 0.01, 10000);
+}
+
+void describe_plants(struct arena *arena, struct json *root, struct description *description)
+{
+    enum { PLANTS_MAX = 256 };
+    size_t count = json_array(root, "plants");
+    if (count < 1 || count > PLANTS_MAX) {
+        json_fail(root, "plants", "has %zu elements; allowed: 1..%d", count, PLANTS_MAX);
+        return;
+    }
+    description->plants_count = count;
+    description->plants = ARENA_ARRAY(arena, struct plant_entry, count);
+    double total = 0;
+    for (size_t k = 0; k < count; k++) {
+        struct json *plant = json_element(root, "plants", k);
+        if (!plant)
+            return;
+        describe_plant(arena, plant, &description->plants[k], description->path);
+        for (size_t i = 0; i < k; i++)
+            if (strcmp(description->plants[i].name, description->plants[k].name) == 0)
+                json_fail(plant, "name",
+                          "value is '%.64s', the name of plants[%zu]; allowed: "
+                          "one not yet taken",
+                          description->plants[k].name, i);
+        total += description->plants[k].weight;
+    }
+    if (!(total > 0))
+        json_fail(root, "plants", "the sum of the weights is 0; allowed: above 0");
+}
+
+static void describe_square(struct json *object, struct placement *placement)
+{
+    placement->extent_m = json_number(object, "extent_m", 0, 0.1, 100000);
+    placement->spacing_m = json_number(object, "spacing_m", 0, 0.01, 10000);
+    if (!object || placement->kind == PLACEMENT_FILE)
+        return;
+    if ((placement->extent_m > 0) == (placement->spacing_m > 0))
+        json_fail(object, "spacing_m", "%s; allowed: either spacing_m or extent_m",
+                  placement->extent_m > 0 ? "stands beside extent_m"
+                                          : "is missing, and so is extent_m");
+}
+
+/* A key that only another kind of placement knows would silently do nothing. */
+static void refuse_key(struct json *object, const char *key, const char *kinds)
+{
+    if (json_has(object, key))
+        json_fail(object, key, "means nothing to this kind; allowed: with %s", kinds);
+}
+
+void describe_placement(struct arena *arena, struct json *root, struct description *description)
+{
+    struct placement *placement = &description->placement;
+    struct json *object = json_object(root, "placement");
+    if (!object) {
+        json_fail(root, "placement", "is missing; allowed: an object with a kind");
+        return;
+    }
+    placement->kind = (enum placement_kind)json_word(object, "kind", "grid|poisson|file", -1);
+    describe_square(object, placement);
+    placement->jitter = json_number(object, "jitter", 1, 0, 1);
+    placement->min_distance_m = json_number(object, "min_distance_m", 0, 0.001, 10000);
+    placement->clearing_m = json_number(object, "clearing_m", 0, 0, 10000);
+    placement->rotate = json_bool(object, "rotate", true);
+    placement->file = describe_path(arena, description->path, json_text(object, "file", NULL));
+    if (placement->kind != PLACEMENT_GRID)
+        refuse_key(object, "jitter", "grid");
+    if (placement->kind != PLACEMENT_POISSON)
+        refuse_key(object, "min_distance_m", "poisson");
+    if (placement->kind == PLACEMENT_FILE) {
+        refuse_key(object, "spacing_m", "grid|poisson");
+        refuse_key(object, "clearing_m", "grid|poisson");
+        if (!placement->file)
+            json_fail(object, "file", "is missing; allowed: a file of positions");
+    } else {
+        refuse_key(object, "file", "file");
+    }
+}
+
+void describe_ground(struct arena *arena, struct json *root, struct description *description)
+{
+    struct ground *ground = &description->ground;
+    struct json *terrain = json_object(root, "terrain");
+    if (!terrain)
+        return;
+    float size_m[2] = {0, 0}, albedo[3] = {0.12f, 0.14f, 0.06f};
+    ground->given = true;
+    if (!json_vector(terrain, "size_m", size_m, 2, 1, 1e6))
+        json_fail(terrain, "size_m", "is missing; allowed: [x, z] in 1..1e6");
+    ground->size_m[0] = size_m[0];
+    ground->size_m[1] = size_m[1];
+    ground->image = describe_path(arena, description->path, json_text(terrain, "image", NULL));
+    ground->height_m = json_number(terrain, "height_m", ground->image ? REQUIRED : 0, 0, 10000);
+    if (!ground->image)
+        refuse_key(terrain, "height_m", "an image");
+    json_vector(terrain, "albedo", albedo, 3, 0, 1);
+    memcpy(ground->albedo, albedo, sizeof albedo);
+}

@@ -1,0 +1,70 @@
+/* What scene.json says, read and checked but not acted upon: no tree placed, no terrain read, no
+ * plant made. */
+#ifndef TREELINE_SCENE_DESCRIPTION_H
+#define TREELINE_SCENE_DESCRIPTION_H
+
+#include "scene/scene.h"
+
+enum { TREES_MAX = 4000000, SIDE_PX_MAX = 16384, TERRAIN_SAMPLES_MAX = 4097 };
+
+struct plant_entry {
+    const char *name;
+    const char *generator, *options; /* a generated plant; options may be NULL */
+    const char *file;                /* or a mesh's path; the other one is NULL */
+    struct plant_import import;
+    float weight, scale[2];
+    float reach_m; /* no vertex is farther from the foot, at scale 1 */
+};
+
+enum placement_kind { PLACEMENT_GRID, PLACEMENT_POISSON, PLACEMENT_FILE };
+
+struct placement {
+    enum placement_kind kind;
+    double extent_m;       /* side of the square; 0: spacing_m sqrt(trees) */
+    double spacing_m;      /* each tree has spacing_m^2 of ground; 0: extent_m holds */
+    double jitter;         /* grid: 0 the middle of the quad, 1 anywhere in it */
+    double min_distance_m; /* Poisson disc; 0: by density */
+    double clearing_m;     /* no tree's foot nearer to the origin */
+    bool rotate;           /* each tree is turned by a random angle */
+    const char *file;      /* positions */
+};
+
+struct ground {
+    bool given;
+    double size_m[2];  /* along x and z */
+    const char *image; /* path; NULL: flat */
+    double height_m;   /* of a white texel; black is 0 */
+    float albedo[3];
+};
+
+struct description {
+    const char *path, *name, *doc;
+    int width_px, height_px;
+    size_t default_trees;
+    size_t *trees;
+    size_t trees_count;
+    unsigned effects;
+    size_t plants_count;
+    struct plant_entry *plants;
+    struct placement placement;
+    struct ground ground;
+    struct sun sun;
+    float ambient[3];
+    struct sky sky;
+    struct fog fog;
+    struct camera_path
+        camera;             /* keys in units of camera_unit_m, near_m and far_m 0 when automatic */
+    bool camera_in_extents; /* the keys' unit is the forest's half side, at least extent_min_m */
+    bool ground_relative;   /* the keys' heights are above the terrain */
+    double extent_min_m;
+};
+
+/* The file of a scene's name or path, STATUS_NOT_FOUND with the nearest name. */
+enum status scene_find(struct arena *arena, const char *name, const char **path,
+                       struct error *error);
+
+/* Reads and checks scene.json. scenes/README.md documents every key. */
+enum status description_load(struct arena *arena, const char *name, struct description *description,
+                             struct error *error);
+
+#endif
