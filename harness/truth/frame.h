@@ -9,14 +9,26 @@
 
 struct frame {
     int width_px, height_px;
-    float *rgba;     /* height x width x 4: linear RGB (background included), plant coverage; row 0 on top */
-    float *variance; /* height x width x 4: variance of the mean of each value; NULL: exact (no sampling) */
+    float *rgba; /* height x width x 4: linear RGB (background included), plant coverage; row 0 on
+                    top */
+    float *variance; /* height x width x 4: variance of the mean of each value; NULL: exact (no
+                        sampling) */
 };
 
+/* What frame_check lets alpha overshoot [0, 1] by: blending in 16-bit floats rounds. */
+#define FRAME_ALPHA_TOLERANCE 0.01f
+/* Largest picture: 2^25 pixels (8K is 7680 x 4320), no side above 2^15. */
+#define FRAME_PIXELS_MAX (1 << 25)
+#define FRAME_SIDE_MAX_PX (1 << 15)
+
+/* Zeroed. A size outside the limits above is the caller's mistake: it is cut to them. */
 struct frame *frame_create(struct arena *arena, int width_px, int height_px, bool with_variance);
 
-/* treeline's own raw format: "TLFRAME1", int32 width, height, flags, then the float planes, little endian, XXH3
- * at the end. Read and written without OpenImageIO, so that timed processes need none. */
+/* treeline's own raw format, little endian, read and written without OpenImageIO, so that timed
+ * processes need none: "TLFRAME1", int32 width, height, flags (1: variance follows), float32 rgba,
+ * float32 variance, and the XXH3-64 (hash_bytes from 0) of all that stands before it. Refused with
+ * the file's name: another magic, unknown flags, a size outside the limits, a length that the size
+ * does not give, a wrong hash. */
 enum status frame_save(const struct frame *frame, const char *path, struct error *error);
 enum status frame_load(struct arena *arena, const char *path, struct frame **frame,
                        struct error *error);
@@ -27,8 +39,9 @@ enum status frame_unpack(struct arena *arena, const void *data, size_t size, con
 
 /* Hash of size and values (not of variance). */
 uint64_t frame_hash(const struct frame *frame);
-/* STATUS_BAD_PICTURE, with the first pixel and value, when a value is NaN, infinite, or alpha is outside
- * [-tolerance, 1 + tolerance]. */
+/* STATUS_BAD_PICTURE, with the first pixel and value, when a value is NaN, infinite, or alpha is
+ * outside
+ * [-FRAME_ALPHA_TOLERANCE, 1 + FRAME_ALPHA_TOLERANCE], or a variance is negative or not finite. */
 enum status frame_check(const struct frame *frame, struct error *error);
 
 #endif
