@@ -2,18 +2,45 @@
 #ifndef TREELINE_TRUTH_METRICS_H
 #define TREELINE_TRUTH_METRICS_H
 
+#include "base/color.h"
 #include "truth/frame.h"
 
-/* X(field, word, better, domain, doc): the order of `treeline diff` and of the results columns.
- * better: -1 lower, +1 higher. domain: "linear" or "display" (sRGB, clamped to [0, 1]). */
+/* All pictures are linear RGB with the background in it. N pixels; a the test, b the reference;
+ * sums over R, G, B unless said otherwise. "linear" metrics take the values as they are, of any
+ * range; "display" metrics take sRGB-encoded values clamped to [0, 1] (FLIP: clamped, then in its
+ * own space). V is the known variance of a - b in a value: that of both pictures added, 0 where a
+ * picture has none.
+ *
+ * rmse           sqrt(mean (a - b)^2).                              value: sqrt(max(0, raw^2 - mean
+ * V)) mae            mean |a - b|.                                      floor: mean sqrt(2 V / pi)
+ * (Gaussian noise) relmse         mean (a - b)^2 / (b^2 + .01).                      value: raw -
+ * mean V / (b^2 + .01), >= 0 psnr           -10 log10(mean (a' - b')^2), a', b' encoded; 100 dB at
+ * most (identical pictures). value: mean V' subtracted, V' = V times the squared slope of the curve
+ * at b (first order; 0 where b is clipped) ssim           mean structural similarity of luma .2126
+ * R' + .7152 G' + .0722 B': truth/ssim.h flip, hdr-flip mean of the map: truth/flip.h coverage mean
+ * |A_a - A_b|.                                  floor: mean sqrt(2 V / pi) coverage-bias  mean A_a
+ * - A_b, > 0: the test covers more.         floor: its standard deviation, sqrt(sum V) / N
+ * mean-color     length of mean a - mean b.                         value: sqrt(max(0, raw^2 - sum
+ * V / N^2)) rmse-2, 4, 8   rmse of the means over boxes of 2 x 2, 4 x 4, 8 x 8 pixels from the top
+ * left corner; a box that the border cuts is the mean of what it has, and counts by its pixels.
+ * Noise as for rmse
+ *
+ * floor of rmse, mean-color, rmse-N: the root of the mean square that is subtracted; of relmse and
+ * psnr: that mean itself (in dB). ssim, flip, hdr-flip have no closed form: value is raw, and floor
+ * compares the reference with itself after a seeded normal deviate, the same for R, G and B of a
+ * pixel (noise of a ray tracer is mostly of brightness) and scaled by sqrt V, is added. Noise of
+ * different pixels is taken as independent.
+ *
+ * X(field, word, better, domain, doc): the order of `treeline diff` and of the results columns.
+ * better: -1 lower, +1 higher, 0 nearer to zero. domain: "linear" or "display". */
 #define METRIC_LIST(X)                                                                             \
     X(rmse, "rmse", -1, "linear", "root mean square error over RGB")                               \
     X(mae, "mae", -1, "linear", "mean absolute error over RGB")                                    \
     X(relmse, "relmse", -1, "linear", "relative mean square error, (a-b)^2 / (b^2 + 0.01)")        \
-    X(psnr_db, "psnr", +1, "display", "peak signal to noise ratio, peak 1, dB")                    \
+    X(psnr_db, "psnr", +1, "display", "peak signal to noise ratio, peak 1, dB, at most 100")       \
     X(ssim, "ssim", +1, "display", "structural similarity of luma, Gaussian 11 x 11, sigma 1.5")   \
     X(flip, "flip", -1, "display", "FLIP, mean of the error map, 67 pixels a degree")              \
-    X(hdr_flip, "hdr-flip", -1, "linear", "HDR-FLIP, mean of the error map over exposures")        \
+    X(hdr_flip, "hdr-flip", -1, "linear", "HDR-FLIP, mean of the map's maximum over exposures")    \
     X(coverage, "coverage", -1, "linear", "mean absolute error of the plants' coverage (alpha)")   \
     X(coverage_bias, "coverage-bias", 0, "linear", "mean signed error of the plants' coverage")    \
     X(mean_color, "mean-color", -1, "linear", "length of the difference of the two mean colours")  \
@@ -34,21 +61,27 @@ struct metric_info {
 };
 extern const struct metric_info metric_table[]; /* ends with a NULL field */
 
-/* value: corrected for the noise of both pictures where a correction is known (squared errors: the mean
- * variance is subtracted and the result kept at >= 0); raw: as measured; floor: what two perfect pictures with this
- * noise would give (the value expected of pure noise). */
+/* raw: as measured. value: corrected for the noise of both pictures where a correction is known
+ * (above), else raw. floor: what two perfect pictures with this noise would give; of exact pictures
+ * 0 (psnr 100, ssim 1). */
 struct comparison {
     struct metrics value, raw, floor;
 };
 
-/* test against reference, both linear RGB. STATUS_INVALID unless of one size. NaN in a picture gives
- * STATUS_BAD_PICTURE. flip_map: height x width, FLIP in [0, 1]; NULL: not wanted. */
+/* test against reference, both linear RGB. STATUS_INVALID unless of one size; STATUS_BAD_PICTURE,
+ * naming the picture, the pixel and the value, where frame_check refuses one. flip_map: height x
+ * width in the arena, FLIP in [0, 1]; NULL: not wanted. The result does not depend on the number of
+ * threads. */
 enum status metrics_compare(struct arena *arena, const struct frame *test,
                             const struct frame *reference, struct comparison *comparison,
                             float **flip_map, struct error *error);
 
-/* Flicker of a path: frames a[0..n), reference b[0..n). Error of the frame-to-frame change, RMSE over RGB and
- * pairs of ((a[k+1]-a[k]) - (b[k+1]-b[k])), its largest pair (popping), noise corrected. n < 2 gives zeros. */
+/* Flicker of a path: frames a[0..n), references b[0..n), linear RGB. The error of the
+ * frame-to-frame change is d = (a[k+1] - a[k]) - (b[k+1] - b[k]). mean: RMS of d over RGB, pixels
+ * and pairs; peak: the largest RMS of one pair (popping); both with the mean variance of d, the sum
+ * of its four pictures', subtracted before the root (noise of successive frames taken as
+ * independent). floor: the root of that mean variance. n < 2 gives zeros. Errors as of
+ * metrics_compare, with the frame's number. */
 struct flicker {
     double mean, peak, floor;
     size_t peak_frame; /* the later frame of the worst pair */
@@ -56,9 +89,5 @@ struct flicker {
 enum status metrics_flicker(struct arena *arena, const struct frame *const *frames,
                             const struct frame *const *references, size_t count,
                             struct flicker *flicker, struct error *error);
-
-/* Linear to display and back, sRGB (IEC 61966-2-1), clamped. */
-float srgb_encode(float linear);
-float srgb_decode(float display);
 
 #endif
