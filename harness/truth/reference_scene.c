@@ -1,0 +1,206 @@
+/* The reference's scene: plants, terrain and instances as Embree has them, and how their parts are
+ * shaded. */
+#include "truth/reference_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+void mesh_uv(const struct mesh *mesh, uint32_t triangle, float u, float v, float uv[2])
+{
+    const uint32_t *corner = mesh->triangles[triangle];
+    for (int i = 0; i < 2; i++)
+        uv[i] = (1 - u - v) * mesh->uvs[corner[0]][i] + u * mesh->uvs[corner[1]][i] +
+                v * mesh->uvs[corner[2]][i];
+}
+
+static int texel_wrap(float texel, int size_px)
+{
+    float wrapped = texel - floorf(texel / (float)size_px) * (float)size_px;
+    int at = (int)wrapped;
+    return at >= 0 && at < size_px ? at : 0;
+}
+
+void texture_sample(const struct texture *texture, const float uv[2], float rgba[4])
+{
+    float x = uv[0] * (float)texture->width_px - 0.5f, y = uv[1] * (float)texture->height_px - 0.5f;
+    float left = floorf(x), below = floorf(y);
+    float s = x - left, t = y - below;
+    int columns[2] = {texel_wrap(left, texture->width_px), texel_wrap(left + 1, texture->width_px)};
+    int rows[2] = {texel_wrap(below, texture->height_px),
+                   texel_wrap(below + 1, texture->height_px)};
+    memset(rgba, 0, 4 * sizeof *rgba);
+    for (int k = 0; k < 4; k++) {
+        const float *texel = texture->rgba + 4 * ((size_t)rows[k / 2] * (size_t)texture->width_px +
+                                                  (size_t)columns[k % 2]);
+        float weight = (k % 2 ? s : 1 - s) * (k / 2 ? t : 1 - t);
+        for (int i = 0; i < 4; i++)
+            rgba[i] += weight * texel[i];
+    }
+}
+
+static bool surface_opaque(const void *data, uint32_t primitive, float u, float v)
+{
+    const struct surface *surface = data;
+    float uv[2], rgba[4];
+    mesh_uv(surface->mesh, surface->first_triangle + primitive, u, v, uv);
+    texture_sample(surface->texture, uv, rgba);
+    return rgba[3] >= 0.5f;
+}
+
+static bool texture_has_holes(const struct texture *texture)
+{
+    size_t texels = (size_t)texture->width_px * (size_t)texture->height_px;
+    for (size_t i = 0; i < texels; i++)
+        if (texture->rgba[4 * i + 3] < 0.5f)
+            return true;
+    return false;
+}
+
+/* Are the vertices' normals those of the triangles, on their outer side? Then shading needs no
+ * look-up. */
+static bool part_is_flat(const struct mesh *mesh, const struct mesh_part *part)
+{
+    for (uint32_t t = part->first_triangle; t < part->first_triangle + part->triangles_count; t++) {
+        const uint32_t *corner = mesh->triangles[t];
+        vec3 first, second, normal;
+        glm_vec3_sub(mesh->positions[corner[1]], mesh->positions[corner[0]], first);
+        glm_vec3_sub(mesh->positions[corner[2]], mesh->positions[corner[0]], second);
+        glm_vec3_cross(first, second, normal);
+        float length = glm_vec3_norm(normal);
+        for (int k = 0; k < 3; k++)
+            if (glm_vec3_dot(normal, mesh->normals[corner[k]]) < 0.99999f * length)
+                return false;
+    }
+    return true;
+}
+
+static void surface_set(struct surface *surface, const struct mesh *mesh,
+                        const struct mesh_part *part, bool plant)
+{
+    const struct material *material = &mesh->materials[part->material];
+    *surface = (struct surface){
+        .mesh = mesh,
+        .first_triangle = part->first_triangle,
+        .leaf = material->kind == MATERIAL_LEAF,
+        .plant = plant,
+        .flat = part_is_flat(mesh, part),
+        .varied = mesh->colors || (material->texture && mesh->uvs),
+        .texture = mesh->uvs ? material->texture : NULL,
+    };
+    memcpy(surface->albedo, material->albedo, sizeof surface->albedo);
+}
+
+static enum status add_mesh(struct arena *arena, struct traced_scene *traced,
+                            const struct mesh *mesh, struct surface *surfaces, bool plant,
+                            struct error *error)
+{
+    struct embree_part *parts = ARENA_ARRAY(arena, struct embree_part, mesh->parts_count);
+    for (size_t i = 0; i < mesh->parts_count; i++) {
+        surface_set(&surfaces[i], mesh, &mesh->parts[i], plant);
+        parts[i] = (struct embree_part){.first_triangle = mesh->parts[i].first_triangle,
+                                        .triangles_count = mesh->parts[i].triangles_count};
+        if (surfaces[i].texture && texture_has_holes(surfaces[i].texture)) {
+            parts[i].opaque = surface_opaque;
+            parts[i].data = &surfaces[i];
+        }
+    }
+    struct embree_mesh traced_mesh = {.positions = (const float *)mesh->positions,
+                                      .vertices_count = mesh->vertices_count,
+                                      .triangles = (const uint32_t *)mesh->triangles,
+                                      .triangles_count = mesh->triangles_count,
+                                      .parts = parts,
+                                      .parts_count = mesh->parts_count};
+    return embree_add_mesh(traced->embree, &traced_mesh, error);
+}
+
+static void add_instance(struct traced_scene *traced, size_t number, mat4 matrix, uint32_t mesh,
+                         uint32_t first_surface, float rotation_rad)
+{
+    float to_world[12];
+    for (int column = 0; column < 4; column++)
+        for (int row = 0; row < 3; row++)
+            to_world[3 * column + row] = matrix[column][row];
+    embree_add_instance(traced->embree, mesh, to_world);
+    traced->placements[number] =
+        (struct placement){cosf(rotation_rad), sinf(rotation_rad), first_surface};
+}
+
+/* A mesh that is traced: its number in Embree and its surfaces. */
+struct traced_mesh {
+    const struct mesh *mesh; /* NULL: not in the scene */
+    uint32_t number, first_surface;
+};
+
+/* The meshes of the species that have an instance, then the terrain's. */
+static enum status find_meshes(struct arena *arena, const struct scene *scene,
+                               struct traced_mesh *meshes, struct error *error)
+{
+    for (size_t i = 0; i < scene->instances_count; i++) {
+        uint32_t species = scene->instances[i].species;
+        if (species >= scene->species_count)
+            return error_set(error, STATUS_INVALID, "instance %zu: species %u is outside 0..%zu", i,
+                             species, scene->species_count - 1);
+        if (meshes[species].mesh)
+            continue;
+        enum status status =
+            plant_mesh(scene->species[species].plant, &meshes[species].mesh, error);
+        if (status)
+            return status;
+    }
+    if (scene->terrain.samples_x)
+        meshes[scene->species_count].mesh = terrain_mesh(arena, &scene->terrain);
+    return STATUS_OK;
+}
+
+static enum status add_meshes(struct arena *arena, const struct scene *scene,
+                              struct traced_mesh *meshes, struct traced_scene *traced,
+                              struct error *error)
+{
+    size_t surfaces_count = 0;
+    for (size_t i = 0; i <= scene->species_count; i++)
+        surfaces_count += meshes[i].mesh ? meshes[i].mesh->parts_count : 0;
+    traced->surfaces = ARENA_ARRAY(arena, struct surface, surfaces_count);
+    uint32_t number = 0, first_surface = 0;
+    for (size_t i = 0; i <= scene->species_count; i++) {
+        if (!meshes[i].mesh)
+            continue;
+        meshes[i].number = number++;
+        meshes[i].first_surface = first_surface;
+        enum status status =
+            add_mesh(arena, traced, meshes[i].mesh, traced->surfaces + first_surface,
+                     i < scene->species_count, error);
+        if (status)
+            return status;
+        first_surface += (uint32_t)meshes[i].mesh->parts_count;
+    }
+    return STATUS_OK;
+}
+
+enum status traced_scene_build(struct arena *arena, const struct scene *scene, int threads,
+                               struct traced_scene *traced, struct error *error)
+{
+    *traced = (struct traced_scene){.scene = scene};
+    struct traced_mesh *meshes = ARENA_ARRAY(arena, struct traced_mesh, scene->species_count + 1);
+    enum status status = find_meshes(arena, scene, meshes, error);
+    if (!status)
+        status = embree_create(arena, threads, &traced->embree, error);
+    if (!status)
+        status = add_meshes(arena, scene, meshes, traced, error);
+    if (status)
+        return status;
+    traced->placements = ARENA_ARRAY(arena, struct placement, scene->instances_count + 1);
+    for (size_t i = 0; i < scene->instances_count; i++) {
+        const struct instance *instance = &scene->instances[i];
+        const struct traced_mesh *mesh = &meshes[instance->species];
+        mat4 matrix;
+        instance_matrix(instance, matrix);
+        add_instance(traced, i, matrix, mesh->number, mesh->first_surface, instance->rotation_rad);
+    }
+    const struct traced_mesh *terrain = &meshes[scene->species_count];
+    if (terrain->mesh) {
+        mat4 matrix = GLM_MAT4_IDENTITY_INIT;
+        add_instance(traced, scene->instances_count, matrix, terrain->number,
+                     terrain->first_surface, 0);
+    }
+    return embree_commit(traced->embree, error);
+}

@@ -1,0 +1,231 @@
+/* The only file that includes Embree; what the versions spell differently is in embree_api3.h and
+ * embree_api4.h. */
+#include "wall/embree.h"
+
+/* clang-format off */
+#define TEXT(x) #x
+#define API_HEADER(version) TEXT(wall/embree_api##version.h)
+#define API_HEADER_OF(version) API_HEADER(version)
+/* clang-format on */
+#include API_HEADER_OF(EMBREE_VERSION)
+
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#define SAME_PLACE(mine, theirs)                                                                   \
+    _Static_assert(offsetof(struct embree_packet, mine) == offsetof(struct RTCRayHit16, theirs),   \
+                   #mine " lies where Embree has " #theirs)
+SAME_PLACE(origin, ray.org_x);
+SAME_PLACE(near, ray.tnear);
+SAME_PLACE(direction, ray.dir_x);
+SAME_PLACE(far, ray.tfar);
+SAME_PLACE(flags, ray.flags);
+SAME_PLACE(normal, hit.Ng_x);
+SAME_PLACE(u, hit.u);
+SAME_PLACE(v, hit.v);
+SAME_PLACE(primitive, hit.primID);
+SAME_PLACE(geometry, hit.geomID);
+SAME_PLACE(instance, hit.instID);
+_Static_assert(sizeof(struct embree_packet) >= sizeof(struct RTCRayHit16), "room for the packet");
+_Static_assert(EMBREE_NONE == RTC_INVALID_GEOMETRY_ID, "the same mark for no hit");
+
+struct mesh_scene {
+    RTCScene scene;
+    struct mesh_scene *next;
+};
+
+/* What the filter of a part needs; Embree keeps the pointer. */
+struct filter {
+    embree_opaque *opaque;
+    const void *data;
+};
+
+struct embree {
+    struct arena *arena;
+    RTCDevice device;
+    RTCScene top;
+    struct mesh_scene *meshes; /* the newest first */
+    uint32_t meshes_count;
+    RTCScene *by_number; /* meshes_count, made by embree_add_instance */
+    uint32_t by_number_count;
+    size_t bytes;
+};
+
+static bool count_memory(void *user, ssize_t bytes, bool post)
+{
+    (void)post;
+    struct embree *embree = user;
+    __atomic_fetch_add(&embree->bytes, (size_t)bytes, __ATOMIC_RELAXED);
+    return true;
+}
+
+static enum status device_status(struct embree *embree, const char *what, struct error *error)
+{
+    enum RTCError code = rtcGetDeviceError(embree->device);
+    if (code == RTC_ERROR_NONE)
+        return STATUS_OK;
+    if (code == RTC_ERROR_OUT_OF_MEMORY)
+        return error_set(error, STATUS_MEMORY, "Embree: %s: no memory left after %zu MiB", what,
+                         embree->bytes >> 20);
+    return error_set(error, STATUS_INTERNAL, "Embree: %s: error code %d", what, (int)code);
+}
+
+enum status embree_create(struct arena *arena, int threads, struct embree **embree,
+                          struct error *error)
+{
+    struct embree *made = ARENA_NEW(arena, struct embree);
+    made->arena = arena;
+    char configuration[64];
+    snprintf(configuration, sizeof configuration, "threads=%d,set_affinity=0", threads);
+    made->device = rtcNewDevice(configuration);
+    if (!made->device)
+        return error_set(error, STATUS_UNAVAILABLE, "Embree: no device on this CPU, error code %d",
+                         (int)rtcGetDeviceError(NULL));
+    rtcSetDeviceMemoryMonitorFunction(made->device, count_memory, made);
+    made->top = rtcNewScene(made->device);
+    rtcSetSceneFlags(made->top, RTC_SCENE_FLAG_ROBUST);
+    *embree = made;
+    return device_status(made, "a new scene", error);
+}
+
+void embree_destroy(struct embree *embree)
+{
+    if (!embree)
+        return;
+    rtcReleaseScene(embree->top);
+    for (struct mesh_scene *mesh = embree->meshes; mesh; mesh = mesh->next)
+        rtcReleaseScene(mesh->scene);
+    rtcReleaseDevice(embree->device);
+}
+
+static void filter_packet(const struct RTCFilterFunctionNArguments *args)
+{
+    const struct filter *filter = args->geometryUserPtr;
+    /* RTCHitN: N each of Ng_x, Ng_y, Ng_z, u, v, primID, geomID, instID. */
+    const float *values = (const float *)args->hit;
+    for (unsigned i = 0; i < args->N; i++) {
+        uint32_t primitive;
+        memcpy(&primitive, values + 5 * args->N + i, sizeof primitive);
+        if (args->valid[i] && !filter->opaque(filter->data, primitive, values[3 * args->N + i],
+                                              values[4 * args->N + i]))
+            args->valid[i] = 0;
+    }
+}
+
+static void add_part(struct embree *embree, RTCScene scene, const struct embree_mesh *mesh,
+                     const struct embree_part *part, RTCBuffer positions)
+{
+    RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (positions)
+        rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0,
+                             3 * sizeof(float), mesh->vertices_count);
+    void *triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                              3 * sizeof(uint32_t), part->triangles_count);
+    if (triangles)
+        memcpy(triangles, mesh->triangles + 3 * (size_t)part->first_triangle,
+               3 * sizeof(uint32_t) * part->triangles_count);
+    if (part->opaque) {
+        struct filter *filter = ARENA_NEW(embree->arena, struct filter);
+        *filter = (struct filter){part->opaque, part->data};
+        rtcSetGeometryUserData(geometry, filter);
+        rtcSetGeometryIntersectFilterFunction(geometry, filter_packet);
+        rtcSetGeometryOccludedFilterFunction(geometry, filter_packet);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, (unsigned)(part - mesh->parts));
+    rtcReleaseGeometry(geometry);
+}
+
+enum status embree_add_mesh(struct embree *embree, const struct embree_mesh *mesh,
+                            struct error *error)
+{
+    /* Embree reads 16 bytes at the last vertex of 12. */
+    size_t bytes = mesh->vertices_count * 3 * sizeof(float);
+    RTCBuffer positions = rtcNewBuffer(embree->device, bytes + 16);
+    if (positions && bytes)
+        memcpy(rtcGetBufferData(positions), mesh->positions, bytes);
+    struct mesh_scene *made = ARENA_NEW(embree->arena, struct mesh_scene);
+    made->scene = rtcNewScene(embree->device);
+    rtcSetSceneFlags(made->scene, RTC_SCENE_FLAG_ROBUST);
+    for (size_t i = 0; i < mesh->parts_count; i++)
+        if (mesh->parts[i].triangles_count)
+            add_part(embree, made->scene, mesh, &mesh->parts[i], positions);
+    if (positions)
+        rtcReleaseBuffer(positions);
+    rtcCommitScene(made->scene);
+    made->next = embree->meshes;
+    embree->meshes = made;
+    embree->meshes_count++;
+    return device_status(embree, "building a mesh", error);
+}
+
+void embree_add_instance(struct embree *embree, uint32_t mesh, const float to_world[12])
+{
+    if (embree->by_number_count != embree->meshes_count) {
+        embree->by_number = ARENA_ARRAY(embree->arena, RTCScene, embree->meshes_count);
+        embree->by_number_count = embree->meshes_count;
+        uint32_t number = embree->meshes_count;
+        for (struct mesh_scene *at = embree->meshes; at; at = at->next)
+            embree->by_number[--number] = at->scene;
+    }
+    RTCGeometry instance = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, embree->by_number[mesh]);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, to_world);
+    rtcCommitGeometry(instance);
+    rtcAttachGeometry(embree->top, instance);
+    rtcReleaseGeometry(instance);
+}
+
+enum status embree_commit(struct embree *embree, struct error *error)
+{
+    rtcCommitScene(embree->top);
+    return device_status(embree, "building the instances", error);
+}
+
+size_t embree_bytes(const struct embree *embree)
+{
+    return __atomic_load_n(&embree->bytes, __ATOMIC_RELAXED);
+}
+
+static void set_valid(int valid[EMBREE_LANES], int count)
+{
+    for (int i = 0; i < EMBREE_LANES; i++)
+        valid[i] = i < count ? -1 : 0;
+}
+
+void embree_intersect(const struct embree *embree, struct embree_packet *packet, int count,
+                      bool coherent)
+{
+    alignas(64) int valid[EMBREE_LANES];
+    set_valid(valid, count);
+    for (int i = 0; i < EMBREE_LANES; i++) {
+        packet->time[i] = 0;
+        packet->mask[i] = UINT32_MAX;
+        packet->flags[i] = 0;
+        packet->geometry[i] = EMBREE_NONE;
+        packet->instance[i] = EMBREE_NONE;
+    }
+    api_intersect16(valid, embree->top, (struct RTCRayHit16 *)packet, coherent);
+}
+
+uint32_t embree_occluded(const struct embree *embree, struct embree_packet *packet, int count)
+{
+    alignas(64) int valid[EMBREE_LANES];
+    set_valid(valid, count);
+    for (int i = 0; i < EMBREE_LANES; i++) {
+        packet->time[i] = 0;
+        packet->mask[i] = UINT32_MAX;
+        packet->flags[i] = 0;
+    }
+    api_occluded16(valid, embree->top, (struct RTCRay16 *)packet);
+    uint32_t blocked = 0;
+    for (int i = 0; i < count; i++)
+        blocked |= (uint32_t)(packet->far[i] < 0) << i;
+    return blocked;
+}
+
+const char *embree_version(void)
+{
+    return "Embree " RTC_VERSION_STRING;
+}
