@@ -51,7 +51,7 @@ WALL_SKIP := $(if $(GL_OSMESA),,harness/wall/gl_osmesa.c) $(if $(GL_EGL),,harnes
 SOURCES := $(filter-out $(WALL_SKIP) harness/cli/treeline.c,$(sort $(wildcard harness/*/*.c))) \
     $(sort $(wildcard methods/*.c))
 GENERATED_C := $(GEN)/methods_builtin.c $(GEN)/gl_load.c $(GEN)/gl_backends.c
-GENERATED_H := $(GEN)/gl_functions.inc \
+GENERATED_H := $(GEN)/gl_functions.inc $(GEN)/build_facts.h \
     $(patsubst methods/%.glsl,$(GEN)/%.glsl.h,$(wildcard methods/*.glsl)) \
     $(patsubst harness/bake/%.glsl,$(GEN)/%.glsl.h,$(wildcard harness/bake/*.glsl))
 OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o) $(GENERATED_C:%.c=%.o)
@@ -107,6 +107,21 @@ $(GEN)/gl_load.c: $(GLCOREARB) Makefile
 	echo '#include "wall/gl_load.h"'; echo 'const struct gl_entry gl_entries[] = {'; \
 	$(gl_names) | while read n; do echo "    {\"gl$$n\", offsetof(struct gl, $$n)},"; done; \
 	echo '    {NULL, 0},'; echo '};'; } > $@
+# What the results say about the build; written anew only when it changed.
+hash := \#
+version_of = $(shell printf '$(hash)include <%s>\nTHE $(2)\n' '$(1)' | $(CC) -E -P -x c - 2>/dev/null | sed -n 's/^THE "*\([^"]*\)"*/\1/p')
+$(GEN)/build_facts.h: FORCE
+	@mkdir -p $(@D)
+	@{ echo '/* Generated: the revision and the libraries of this build. */'; \
+	revision=$$(git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null); \
+	echo "#define TREELINE_REVISION \"$${revision:-unknown}\""; \
+	list="embree $(call version_of,embree$(EMBREE)/rtcore.h,RTC_VERSION_STRING)"; \
+	list="$$list, meshoptimizer $(call version_of,meshoptimizer.h,MESHOPTIMIZER_VERSION)"; \
+	for p in OpenImageIO $(PKG); do list="$$list, $$p $$(pkg-config --modversion $$p 2>/dev/null)"; done; \
+	echo "#define TREELINE_LIBRARIES \"$$list\""; } > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+.PHONY: FORCE
+FORCE:
 GL_BACKENDS := $(if $(GL_OSMESA),gl_osmesa) $(if $(GL_EGL),gl_egl_surfaceless gl_egl_device)
 $(GEN)/gl_backends.c: Makefile
 	@mkdir -p $(@D)

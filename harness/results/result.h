@@ -10,7 +10,8 @@
 #define RESULT_VERSION 1
 
 /* Scalar columns, one table for JSON keys, report columns and docs. X(field, unit, better, doc).
- * All are double; NaN in memory means "not measured" and is null in JSON. Times of frames are in frame_seconds[]. */
+ * All are double; NaN in memory means "not measured" and is null in JSON. Times of frames are in
+ * frame_seconds[]. */
 #define RESULT_COLUMNS(X)                                                                          \
     X(scene_seconds, "s", -1, "loading the scene and placing the trees")                           \
     X(plant_seconds, "s", -1, "building the plants the method asked for")                          \
@@ -34,14 +35,15 @@
 
 /* One compared picture. */
 struct result_view {
-    double time;                 /* along the path */
-    double distance_m;           /* median distance of the eye to the trees in the frustum */
+    double time;       /* along the path */
+    double distance_m; /* median distance of the eye to the trees in the frustum */
     uint64_t picture_hash;
     const char *picture;         /* path of the frame file under the run folder */
     uint64_t same_key, full_key; /* reference_key of either reference */
     bool compared;
-    struct comparison same;      /* against the reference of the same effects: error of the representation */
-    struct comparison full;      /* against the reference of all that the scene asks for: total error */
+    struct comparison
+        same; /* against the reference of the same effects: error of the representation */
+    struct comparison full; /* against the reference of all that the scene asks for: total error */
     float same_standard_error, full_standard_error; /* of the references */
 };
 
@@ -49,10 +51,10 @@ struct result {
     struct cell cell;
     int repetition;
     enum status status;
-    const char *message;  /* one line; "" when ok */
-    int signal;           /* that killed it, else 0 */
-    const char *started;  /* ISO 8601 UTC */
-    double seconds;       /* the whole repetition */
+    const char *message;             /* one line; "" when ok and nothing is odd */
+    int signal;                      /* that killed it, else 0 */
+    const char *started;             /* ISO 8601 UTC */
+    double seconds;                  /* the whole repetition */
     unsigned effects, scene_effects; /* drawn; asked for */
     size_t instances;
     uint64_t scene_hash;
@@ -62,16 +64,20 @@ struct result {
     RESULT_COLUMNS(RESULT_FIELD)
 #undef RESULT_FIELD
     size_t frames_count;
-    double *frame_seconds;       /* wall clock around draw and finish */
+    double *frame_seconds; /* wall clock around draw and finish */
     size_t views_count;
     struct result_view *views;
     bool has_flicker;
-    struct flicker flicker;      /* over the compared views, same effects */
+    struct flicker flicker; /* over the compared views, same effects */
 };
+
+/* A result about which nothing is known yet: columns NaN, texts "", status ok. */
+void result_init(struct result *result, const struct cell *cell, int repetition);
 
 /* First line of a run's file: where, what, by whom. */
 struct provenance {
-    const char *host, *cpu, *kernel, *os, *compiler, *flags, *revision, *libraries, *plan, *command, *started;
+    const char *host, *cpu, *kernel, *os, *compiler, *flags, *revision, *libraries, *plan, *command,
+        *started;
     int cores;
     double memory_bytes;
     uint64_t seed, plan_hash;
@@ -82,8 +88,8 @@ struct run {
     const char *folder;
     struct provenance provenance;
     size_t results_count;
-    struct result *results;   /* in file order */
-    size_t torn_lines;        /* a last line cut by a kill is dropped and counted */
+    struct result *results; /* in file order */
+    size_t torn_lines;      /* a last line cut by a kill is dropped and counted */
 };
 
 /* One line without newline, in the arena. */
@@ -92,12 +98,13 @@ enum status result_from_json(struct arena *arena, const char *text, const char *
                              struct result *result, struct error *error);
 char *provenance_to_json(struct arena *arena, const struct provenance *provenance);
 
-/* FOLDER/cells.jsonl. Creates the folder and the first line when absent; a file of another version or plan is refused
- * unless resume allows the plan. Appends are whole lines, fsynced. */
+/* FOLDER/cells.jsonl. Creates the folder and the first line when absent; a file of another version
+ * or plan is refused unless resume allows the plan. Appends are whole lines, fsynced. */
 enum status run_open(const char *folder, const struct provenance *provenance, bool resume,
                      struct error *error);
 enum status run_append(const char *folder, const struct result *result, struct error *error);
-/* Reads a run; accepts the folder or the file. A malformed line in the middle is STATUS_INVALID with its number. */
+/* Reads a run; accepts the folder or the file. A malformed line in the middle is STATUS_INVALID
+ * with its number. */
 enum status run_read(struct arena *arena, const char *path, struct run **run, struct error *error);
 
 /* Fills in everything about this machine and build; command is argv joined. */

@@ -1,0 +1,67 @@
+/* The measuring settings: their defaults, ranges and meaning. */
+#include "plan/settings.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* clang-format off */
+const struct option plan_settings_table[] = {
+    OPTION(struct plan_settings, rounds, 5, 1, 10000, "",
+           "repetitions of each cell, each in a fresh process, in random order"),
+    OPTION(struct plan_settings, frame_seconds, 1, 0.001, 3600, "s",
+           "measuring time of a repetition, after the warm-up"),
+    OPTION(struct plan_settings, frames_max, 1000, 1, 100000, "",
+           "timed frames of a repetition at most"),
+    OPTION(struct plan_settings, timeout_seconds, 300, 0.05, 86400, "s",
+           "time limit of one repetition, pictures included"),
+    OPTION(struct plan_settings, memory_bytes, 0, 0, 1e15, "B",
+           "budget of a method's host memory, 0 for none"),
+    OPTION(struct plan_settings, reference_error, 0.004, 1e-5, 1, "",
+           "standard error asked of the references, RMS over the picture, linear RGB"),
+    OPTION(struct plan_settings, reference_samples_max, 1024, 16, 1048576, "",
+           "samples a pixel of the references at most"),
+    OPTION(struct plan_settings, threads, 0, 0, 1024, "",
+           "threads of llvmpipe and of CPU methods, 0 for all"),
+    OPTION(struct plan_settings, views, 5, 1, 64, "",
+           "pictures compared along the camera path, one where the camera stands still"),
+    OPTION_END,
+};
+/* clang-format on */
+
+void plan_settings_put(struct plan_settings *settings, const struct option *option, double value)
+{
+    char *field = (char *)settings + option->offset;
+    if (option->type == OPTION_INT)
+        memcpy(field, &(int){(int)value}, sizeof(int));
+    else
+        memcpy(field, &value, sizeof value);
+}
+
+enum status plan_settings_override(struct plan_settings *settings,
+                                   const struct plan_request *request, struct error *error)
+{
+    const struct {
+        const char *name;
+        double value;
+    } given[] = {
+        {"rounds", request->rounds},
+        {"frame_seconds", request->frame_seconds},
+        {"frames_max", request->frames_max},
+        {"timeout_seconds", request->timeout_seconds},
+        {"memory_bytes", (double)request->memory_bytes},
+        {"reference_error", request->reference_error},
+        {"reference_samples_max", request->reference_samples_max},
+        {"threads", request->threads},
+        {"views", (double)request->views_count},
+    };
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        if (given[i].value == 0)
+            continue;
+        char text[32];
+        snprintf(text, sizeof text, "%.17g", given[i].value);
+        enum status status = option_set(plan_settings_table, given[i].name, text, settings, error);
+        if (status)
+            return status;
+    }
+    return STATUS_OK;
+}
