@@ -22,8 +22,7 @@ struct entry_header {
 };
 static const char magic[8] = "TLCACHE1";
 
-/* False when the cache is off or has no place. */
-static bool cache_folder(char *folder)
+bool cache_folder(char *folder)
 {
     const char *given = getenv("TREELINE_CACHE"), *xdg = getenv("XDG_CACHE_HOME"),
                *home = getenv("HOME");

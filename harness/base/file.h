@@ -23,6 +23,8 @@ bool file_exists(const char *path);
 /* The cache: $TREELINE_CACHE, else $XDG_CACHE_HOME/treeline, else ~/.cache/treeline. Entries are
  * KIND-HASH; an entry that is torn or of another size does not exist. TREELINE_CACHE=off disables.
  */
+/* The cache's folder, into PATH_MAX bytes; false when it is off or has no place. */
+bool cache_folder(char *folder);
 bool cache_get(struct arena *arena, const char *kind, uint64_t hash, void **data, size_t *size);
 /* A cache that cannot be written is no error: the thing is built again next time. */
 void cache_put(const char *kind, uint64_t hash, const void *data, size_t size);

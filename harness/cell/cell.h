@@ -5,10 +5,10 @@
 #include "plan/plan.h"
 #include "results/result.h"
 
-/* Forks; the child loads the scene, prepares, warms up, times, then draws and compares the pictures. The parent
- * touches no GL, Embree or image library. Whatever happens to the child is told in result (never an error):
- * status, message, signal. Returns STATUS_INTERRUPTED when this process was asked to stop.
- * folder: the run's folder for pictures, NULL: none are kept. */
+/* Forks; the child loads the scene, prepares, warms up, times, then draws and compares the
+ * pictures. The parent touches no GL, Embree or image library. Whatever happens to the child is
+ * told in result (never an error): status, message, signal. Returns STATUS_INTERRUPTED when this
+ * process was asked to stop. folder: the run's folder for pictures, NULL: none are kept. */
 enum status cell_run(struct arena *arena, const struct plan *plan, const struct cell *cell,
                      int repetition, const char *folder, struct result *result);
 
@@ -16,14 +16,17 @@ enum status cell_run(struct arena *arena, const struct plan *plan, const struct 
 enum status cell_run_here(struct arena *arena, const struct plan *plan, const struct cell *cell,
                           int repetition, const char *folder, struct result *result);
 
-/* One picture of a cell at a time along its path or from a given view (`render`). view may be NULL. */
+/* One picture of a cell at a time along its path or from a given view (`render`). view may be NULL.
+ */
 enum status cell_render(struct arena *arena, const struct cell *cell, double time,
                         const struct view *view, const char *backend, struct frame **frame,
                         struct error *error);
 
-/* The reference of a cell's view k, through the cache, in a child process (Embree starts threads).
- * effects: which to trace. */
-enum status cell_references(struct arena *arena, const struct plan *plan, bool quiet,
-                            struct error *error);
+/* Before the first timed round: every reference that the plan's cells are compared with, once,
+ * through the disk cache, each scene in a child process (Embree starts threads), kept as
+ * FOLDER/references/KEY.frame (16 hex digits of reference_key). One that fails is told on stderr
+ * and its cells run uncompared. STATUS_INTERRUPTED when stopped. */
+enum status cell_references(struct arena *arena, const struct plan *plan, const char *folder,
+                            bool quiet, struct error *error);
 
 #endif

@@ -1,0 +1,233 @@
+/* The picture pass: draw, read, check, keep, compare; after the clock has stopped. */
+#include "cell/stage.h"
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "stats/stats.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* The pictures of a repetition with the references they are compared with. */
+struct album {
+    size_t count, compared;
+    const struct frame **pictures, **references;
+    uint64_t draw_calls, triangles;
+    struct gl_statistics statistics;
+};
+
+static const char *picture_name(struct arena *arena, const struct cell *cell, size_t view)
+{
+    return arena_printf(arena, "pictures/%016" PRIx64 "-v%zu.frame", hash_text(0, cell->name),
+                        view);
+}
+
+/* Median distance from the eye to the trees' feet in the frustum; to all trees when none is in it.
+ */
+static double trees_distance_m(const struct scene *scene, const struct view *view)
+{
+    struct arena *arena = arena_create(0);
+    double *distances = ARENA_ARRAY(arena, double, scene->instances_count);
+    size_t seen = 0;
+    for (int all = 0; all < 2 && !seen; all++)
+        for (size_t i = 0; i < scene->instances_count; i++) {
+            const float *foot = scene->instances[i].position_m;
+            if (all || view_sees_sphere(view, foot, 1.0f))
+                distances[seen++] = hypot(hypot(foot[0] - view->eye_m[0], foot[1] - view->eye_m[1]),
+                                          foot[2] - view->eye_m[2]);
+        }
+    double median = stats_median(distances, seen);
+    arena_destroy(arena);
+    return median;
+}
+
+static enum status picture_draw(struct stage *stage, const struct view *view, struct album *album,
+                                struct frame **frame)
+{
+    if (stage->gl) {
+        gl_counters_reset(stage->gl);
+        gl_statistics_begin(stage->gl);
+    }
+    enum status status = stage_draw(stage, view, NULL);
+    if (stage->gl) {
+        struct gl_statistics one = gl_statistics_end(stage->gl);
+        album->statistics.vertices += one.vertices;
+        album->statistics.primitives += one.primitives;
+        album->statistics.fragments += one.fragments;
+        album->draw_calls += stage->gl->counters.draw_calls;
+        album->triangles += stage->gl->counters.triangles;
+    }
+    if (!status)
+        status = stage_check(stage, "a picture");
+    if (status)
+        return status;
+    *frame = stage_read(stage, stage->scene_arena);
+    return frame_check(*frame, stage->error);
+}
+
+/* The reference from the run's folder; without a folder through the cache. NULL with a note when
+ * there is none. */
+static const struct frame *reference_find(struct stage *stage, const struct view *view,
+                                          unsigned effects, uint64_t *key)
+{
+    struct reference_options options = stage_reference_options(stage->plan, stage->cell, effects);
+    struct error why = {0};
+    struct frame *frame = NULL;
+    *key = reference_key(stage->scene, view, &options);
+    if (stage->folder) {
+        const char *path = stage_reference_path(stage->scene_arena, stage->folder, *key);
+        if (!file_exists(path) || frame_load(stage->scene_arena, path, &frame, &why))
+            frame = NULL;
+    } else {
+        struct reference_stats stats;
+        if (reference_cached(stage->scene_arena, stage->scene, view, &options, &frame, &stats,
+                             &why))
+            frame = NULL;
+    }
+    if (!frame)
+        stage->result->message = arena_printf(stage->result_arena, "not compared: %s",
+                                              *why.text ? why.text : "the reference was not made");
+    return frame;
+}
+
+/* Root mean square standard error of the picture's RGB. */
+static float standard_error(const struct frame *frame)
+{
+    if (!frame->variance)
+        return 0;
+    double sum = 0;
+    size_t pixels = (size_t)frame->width_px * (size_t)frame->height_px;
+    for (size_t i = 0; i < pixels; i++)
+        for (int c = 0; c < 3; c++)
+            sum += frame->variance[4 * i + (size_t)c];
+    return (float)sqrt(sum / (3 * (double)pixels));
+}
+
+static enum status picture_compare(struct stage *stage, const struct view *view,
+                                   const struct frame *frame, struct result_view *result,
+                                   const struct frame **reference)
+{
+    struct result *whole = stage->result;
+    const struct frame *same = reference_find(stage, view, whole->effects, &result->same_key);
+    const struct frame *full = same;
+    result->full_key = result->same_key;
+    if (whole->effects != whole->scene_effects)
+        full = reference_find(stage, view, whole->scene_effects, &result->full_key);
+    *reference = same;
+    if (!same || !full)
+        return STATUS_OK;
+    struct arena *arena = arena_create(0);
+    enum status status = metrics_compare(arena, frame, same, &result->same, NULL, stage->error);
+    result->full = result->same;
+    if (!status && full != same)
+        status = metrics_compare(arena, frame, full, &result->full, NULL, stage->error);
+    arena_destroy(arena);
+    result->same_standard_error = standard_error(same);
+    result->full_standard_error = standard_error(full);
+    result->compared = !status;
+    return status;
+}
+
+static enum status view_picture(struct stage *stage, size_t index, size_t count,
+                                struct album *album)
+{
+    struct result_view *result = &stage->result->views[index];
+    struct view view;
+    struct frame *frame;
+    result->time = path_time(stage->scene, index, count);
+    view_at(stage->scene, result->time, &view);
+    stage_announce(stage, "a picture");
+    enum status status = picture_draw(stage, &view, album, &frame);
+    if (status)
+        return error_context(stage->error, "picture %zu", index);
+    result->picture_hash = frame_hash(frame);
+    result->distance_m = trees_distance_m(stage->scene, &view);
+    if (stage->folder) {
+        result->picture = picture_name(stage->result_arena, stage->cell, index);
+        const char *path =
+            arena_printf(stage->scene_arena, "%s/%s", stage->folder, result->picture);
+        status = frame_save(frame, path, stage->error);
+    }
+    stage_announce(stage, "comparing a picture");
+    if (!status)
+        status = picture_compare(stage, &view, frame, result, &album->references[index]);
+    album->pictures[index] = frame;
+    album->compared += result->compared;
+    return status;
+}
+
+static enum status album_flicker(struct stage *stage, const struct album *album)
+{
+    if (album->count < 2 || album->compared < album->count)
+        return STATUS_OK;
+    struct arena *arena = arena_create(0);
+    enum status status = metrics_flicker(arena, album->pictures, album->references, album->count,
+                                         &stage->result->flicker, stage->error);
+    arena_destroy(arena);
+    stage->result->has_flicker = !status;
+    return status;
+}
+
+static void album_counts(struct result *result, const struct album *album, bool statistics)
+{
+    double count = (double)album->count;
+    result->draw_calls = (double)album->draw_calls / count;
+    result->triangles = (double)album->triangles / count;
+    if (!statistics)
+        return;
+    result->vertices = (double)album->statistics.vertices / count;
+    result->primitives = (double)album->statistics.primitives / count;
+    result->fragments = (double)album->statistics.fragments / count;
+}
+
+/* The first picture once more, against the one that repetition 0 kept: the same cell gives the same
+ * bytes. */
+static enum status picture_again(struct stage *stage, const struct frame *before)
+{
+    struct album album = {.count = 1};
+    struct frame *frame;
+    struct view view;
+    struct result *result = stage->result;
+    stage_announce(stage, "a picture");
+    double time =
+        path_time(stage->scene, 0, stage_views_count(stage->scene, stage->plan->views_count));
+    view_at(stage->scene, time, &view);
+    enum status status = picture_draw(stage, &view, &album, &frame);
+    if (status)
+        return error_context(stage->error, "picture 0");
+    result->views_count = 1;
+    result->views = ARENA_NEW(stage->result_arena, struct result_view);
+    result->views[0].time = time;
+    result->views[0].distance_m = NAN;
+    result->views[0].picture_hash = frame_hash(frame);
+    if (result->views[0].picture_hash != frame_hash(before))
+        result->message = "the picture differs from repetition 0's";
+    return STATUS_OK;
+}
+
+enum status stage_pictures(struct stage *stage)
+{
+    struct arena *arena = stage->scene_arena;
+    struct result *result = stage->result;
+    if (stage->folder && result->repetition) {
+        struct frame *before;
+        const char *path =
+            arena_printf(arena, "%s/%s", stage->folder, picture_name(arena, stage->cell, 0));
+        if (file_exists(path) && !frame_load(arena, path, &before, NULL))
+            return picture_again(stage, before);
+    }
+    struct album album = {.count = stage_views_count(stage->scene, stage->plan->views_count)};
+    album.pictures = ARENA_ARRAY(arena, const struct frame *, album.count);
+    album.references = ARENA_ARRAY(arena, const struct frame *, album.count);
+    result->views_count = album.count;
+    result->views = ARENA_ARRAY(stage->result_arena, struct result_view, album.count);
+    enum status status = STATUS_OK;
+    if (stage->folder)
+        status = file_make_folder(arena_printf(arena, "%s/pictures", stage->folder), stage->error);
+    for (size_t i = 0; i < album.count && !status; i++)
+        status = view_picture(stage, i, album.count, &album);
+    if (!status && stage->gl)
+        album_counts(result, &album, stage->gl->has_pipeline_statistics);
+    return status ? status : album_flicker(stage, &album);
+}
