@@ -1,0 +1,212 @@
+/* treeline run: plan, folder, references, rounds, table, report. */
+#include "cli/run.h"
+
+#include "base/clock.h"
+#include "base/hash.h"
+#include "base/progress.h"
+#include "cell/cell.h"
+#include "results/run.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char *folder_choose(struct arena *arena, const struct run_request *request,
+                                 const struct plan *plan)
+{
+    if (!request->out) {
+        time_t now = time(NULL);
+        struct tm parts;
+        char text[32];
+        gmtime_r(&now, &parts);
+        strftime(text, sizeof text, "%Y%m%d-%H%M%S", &parts);
+        return arena_printf(arena, "results/%s-%s", plan->name, text);
+    }
+    char *folder = arena_strdup(arena, request->out);
+    for (size_t end = strlen(folder); end > 1 && folder[end - 1] == '/'; end--)
+        folder[end - 1] = 0;
+    return folder;
+}
+
+static const char *command_join(struct arena *arena, int argc, char **argv)
+{
+    const char *text = argv[0];
+    for (int i = 1; i < argc; i++) {
+        bool plain = *argv[i] && !strpbrk(argv[i], " '\"$`\\*?&|;<>()");
+        text = arena_printf(arena, plain ? "%s %s" : "%s '%s'", text, argv[i]);
+    }
+    return text;
+}
+
+/* What one repetition takes about: start-up, warm-up, the timed frames, pictures. */
+static double repetition_guess_seconds(const struct plan *plan)
+{
+    return 1 + 1.7 * plan->frame_seconds;
+}
+
+/* The repetitions already told in the folder, as a set of hashes of cell and repetition. */
+struct done {
+    size_t slots_count;
+    uint64_t *slots;
+};
+
+static uint64_t repetition_hash(const char *cell, int repetition)
+{
+    uint64_t hash = hash_u64(hash_text(0, cell), (uint64_t)repetition);
+    return hash ? hash : 1;
+}
+
+static uint64_t *done_slot(const struct done *done, uint64_t hash)
+{
+    size_t i = hash & (done->slots_count - 1);
+    while (done->slots[i] && done->slots[i] != hash)
+        i = (i + 1) & (done->slots_count - 1);
+    return &done->slots[i];
+}
+
+static enum status done_read(struct arena *arena, const char *folder, bool retry, struct done *done,
+                             struct error *error)
+{
+    struct run *run;
+    enum status status = run_read(arena, folder, &run, error);
+    if (status)
+        return status;
+    for (done->slots_count = 16; done->slots_count < 4 * run->results_count;)
+        done->slots_count *= 2;
+    done->slots = ARENA_ARRAY(arena, uint64_t, done->slots_count);
+    for (size_t i = 0; i < run->results_count; i++) {
+        const struct result *result = &run->results[i];
+        uint64_t hash = repetition_hash(result->cell.name, result->repetition);
+        if (result->status == STATUS_OK || !retry)
+            *done_slot(done, hash) = hash;
+    }
+    return STATUS_OK;
+}
+
+struct rounds {
+    const struct run_request *request;
+    const struct plan *plan;
+    const char *folder;
+    struct done done;
+    struct progress *progress;
+    size_t count, finished, failed;
+};
+
+static enum status repetition_do(struct rounds *rounds, const struct cell *cell, int repetition,
+                                 struct error *error)
+{
+    uint64_t hash = repetition_hash(cell->name, repetition);
+    if (*done_slot(&rounds->done, hash) == hash)
+        return STATUS_OK;
+    struct arena *arena = arena_create(0);
+    struct result result;
+    progress_update(rounds->progress, (double)rounds->finished, cell->name);
+    enum status status = cell_run(arena, rounds->plan, cell, repetition, rounds->folder, &result);
+    if (status == STATUS_INTERRUPTED) {
+        arena_destroy(arena);
+        return error_set(error, status,
+                         "stopped; finished repetitions are in %s, --resume continues",
+                         rounds->folder);
+    }
+    if (result.status && !rounds->request->quiet)
+        fprintf(stderr, "%streeline: %s: %s: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "",
+                cell->name, status_word(result.status), result.message);
+    rounds->failed += result.status != STATUS_OK;
+    status = run_append(rounds->folder, &result, error);
+    rounds->finished++;
+    progress_update(rounds->progress, (double)rounds->finished, cell->name);
+    arena_destroy(arena);
+    return status;
+}
+
+static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct error *error)
+{
+    const struct plan *plan = rounds->plan;
+    size_t *order = ARENA_ARRAY(arena, size_t, plan->cells_count);
+    enum status status = STATUS_OK;
+    for (int round = 0; round < plan->rounds; round++)
+        for (size_t i = 0; i < plan->cells_count; i++) {
+            uint64_t hash = repetition_hash(plan->cells[i].name, round);
+            rounds->count += *done_slot(&rounds->done, hash) != hash;
+        }
+    if (!rounds->request->quiet)
+        fprintf(stderr,
+                "treeline: %zu repetitions of %zu cells into %s, about %.0f s of measuring\n",
+                rounds->count, plan->cells_count, rounds->folder,
+                (double)rounds->count * repetition_guess_seconds(plan));
+    if (!rounds->count)
+        return STATUS_OK;
+    status = cell_references(arena, plan, rounds->folder, rounds->request->quiet, error);
+    if (status)
+        return status;
+    rounds->progress = progress_start("cells", (double)rounds->count, rounds->request->quiet);
+    for (int round = 0; round < plan->rounds && !status; round++) {
+        plan_order(plan, round, order);
+        for (size_t i = 0; i < plan->cells_count && !status; i++)
+            status = repetition_do(rounds, &plan->cells[order[i]], round, error);
+    }
+    progress_end(rounds->progress);
+    return status;
+}
+
+enum status run_all(struct arena *arena, const struct run_request *request, const struct plan *plan,
+                    const char *folder, const char *command, struct error *error)
+{
+    /* Held back here, so that they reach whoever waits for a child, and never cut a line of the
+     * results. */
+    sigset_t held;
+    sigemptyset(&held);
+    sigaddset(&held, SIGINT);
+    sigaddset(&held, SIGTERM);
+    sigaddset(&held, SIGHUP);
+    sigprocmask(SIG_BLOCK, &held, NULL);
+    int lock = -1;
+    struct provenance provenance;
+    struct rounds rounds = {.request = request, .plan = plan, .folder = folder};
+    provenance_here(arena, plan, command, &provenance);
+    enum status status = run_lock(folder, &lock, error);
+    if (status)
+        return status;
+    status = run_open(folder, &provenance, request->resume, error);
+    if (!status)
+        status = done_read(arena, folder, request->retry, &rounds.done, error);
+    if (!status)
+        status = rounds_do(arena, &rounds, error);
+    run_unlock(lock);
+    if (!status && rounds.failed)
+        return error_set(error, STATUS_CELLS_FAILED, "%zu of %zu repetitions failed", rounds.failed,
+                         rounds.count);
+    return status;
+}
+
+static enum status plan_print(const struct plan *plan)
+{
+    for (size_t i = 0; i < plan->cells_count; i++)
+        printf("%s\n", plan->cells[i].name);
+    double seconds = (double)plan->cells_count * plan->rounds * repetition_guess_seconds(plan);
+    fprintf(stderr, "treeline: %zu cells, %d rounds, about %.0f s of measuring\n",
+            plan->cells_count, plan->rounds, seconds);
+    return STATUS_OK;
+}
+
+int verb_run(int argc, char **argv)
+{
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    struct run_request request = {0};
+    struct plan *plan;
+    const char *command = command_join(arena, argc, argv);
+    run_request_parse(arena, argc, argv, &request);
+    enum status status = plan_load(arena, &request.plan, &plan, &error);
+    if (status || request.dry_run) {
+        int code = status ? cli_fail(&error) : (int)plan_print(plan);
+        arena_destroy(arena);
+        return code;
+    }
+    const char *folder = folder_choose(arena, &request, plan);
+    status = run_all(arena, &request, plan, folder, command, &error);
+    arena_destroy(arena);
+    return status ? cli_fail(&error) : STATUS_OK;
+}

@@ -1,0 +1,13 @@
+/* The table of verbs. */
+#include "cli/cli.h"
+
+const struct verb verbs[] = {
+    {"run", "time cells, draw and judge their pictures", verb_run},
+    {"list", "list methods, scenes, metrics or plants", verb_list},
+    {"render", "draw one view of a cell to an EXR or PNG file", verb_render},
+    {"reference", "ray trace one view to an EXR or PNG file", verb_reference},
+    {"diff", "compare two pictures by every metric", verb_diff},
+    {"cache", "show, trim or clear the cache of built things", verb_cache},
+    {"help", "explain a verb, a method or the exit codes", verb_help},
+    {NULL, NULL, NULL},
+};
