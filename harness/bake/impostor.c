@@ -1,0 +1,249 @@
+/* Impostors: trees and order on the GL, programs, the state of blending, test and coverage. */
+#include "bake/impostor.h"
+
+#include "impostor.glsl.h"
+
+#include <string.h>
+
+/* As impostor.glsl reads it. */
+struct tree {
+    float position_m[3], scale;
+    float cos, sin, species, unused;
+};
+
+/* Most trees that are drawn with the polygon of ATLAS_HULL corners at a time. */
+enum { HULLS_MOST = 65536 };
+
+static GLuint upload_trees(struct gl *gl, const struct scene *scene)
+{
+    struct arena *scratch = arena_create(0);
+    struct tree *trees = ARENA_ARRAY(scratch, struct tree, scene->instances_count + 1);
+    for (size_t i = 0; i < scene->instances_count; i++) {
+        const struct instance *instance = &scene->instances[i];
+        trees[i] = (struct tree){.position_m = {instance->position_m[0], instance->position_m[1],
+                                                instance->position_m[2]},
+                                 .scale = instance->scale,
+                                 .cos = cosf(instance->rotation_rad),
+                                 .sin = sinf(instance->rotation_rad),
+                                 .species = (float)instance->species};
+    }
+    GLuint buffer =
+        gl_buffer(gl, (GLsizeiptr)((scene->instances_count + 1) * sizeof *trees), trees, 0);
+    arena_destroy(scratch);
+    return buffer;
+}
+
+/* Triangles of fans: first the quads, then the hulls. Both number their corners from 0. */
+static GLuint upload_indices(struct gl *gl, size_t quads, size_t hulls)
+{
+    enum { HULL_INDICES = 3 * (ATLAS_HULL - 2) };
+    struct arena *scratch = arena_create(0);
+    size_t count = 6 * quads + HULL_INDICES * hulls;
+    uint32_t *indices = ARENA_ARRAY(scratch, uint32_t, count + 1), *at = indices;
+    for (size_t i = 0; i < quads + hulls; i++) {
+        uint32_t corners = i < quads ? 4 : ATLAS_HULL;
+        uint32_t first = corners * (uint32_t)(i < quads ? i : i - quads);
+        for (uint32_t k = 1; k + 1 < corners; k++) {
+            *at++ = first;
+            *at++ = first + k;
+            *at++ = first + k + 1;
+        }
+    }
+    GLuint buffer = gl_buffer(gl, (GLsizeiptr)((count + 1) * sizeof *indices), indices, 0);
+    arena_destroy(scratch);
+    return buffer;
+}
+
+/* Mean silhouette of the trees over all pictures, in the world's size. */
+static float mean_area(const struct scene *scene, const struct atlas *atlas)
+{
+    double sum = 0;
+    for (size_t i = 0; i < scene->instances_count; i++) {
+        const struct instance *instance = &scene->instances[i];
+        const struct atlas_species *species = &atlas->species[instance->species];
+        const struct atlas_view *view = &atlas->views[(size_t)species->first_view];
+        sum += (double)instance->scale * instance->scale * (view->high[0] - view->low[0]) *
+               (view->high[1] - view->low[1]);
+    }
+    return scene->instances_count ? (float)(sum / (double)scene->instances_count) : 0;
+}
+
+enum status impostor_prepare(struct workspace *workspace, const struct scene *scene,
+                             const struct atlas_request *request, size_t quads_each,
+                             struct impostor **result)
+{
+    struct gl *gl = workspace->gl;
+    struct impostor *impostor = *result = ARENA_NEW(workspace->arena, struct impostor);
+    impostor->scene = scene;
+    impostor->alpha = request->alpha;
+    enum status status = backdrop_prepare(workspace, scene, &impostor->backdrop);
+    if (status == STATUS_OK)
+        status = atlas_build(workspace, scene, request, &impostor->atlas);
+    if (status != STATUS_OK)
+        return status;
+    struct cull_bound *bounds =
+        ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count + 1);
+    for (size_t i = 0; i < scene->species_count; i++) {
+        bounds[i].center_y_m = impostor->atlas->species[i].center_y_m;
+        bounds[i].radius_m = impostor->atlas->species[i].radius_m;
+    }
+    size_t count = scene->instances_count;
+    impostor->cull = cull_create(workspace->arena, scene, bounds);
+    impostor->area_m2 = mean_area(scene, impostor->atlas);
+    impostor->fans_quad = count * quads_each;
+    impostor->fans_hull = count < HULLS_MOST ? count : HULLS_MOST;
+    impostor->instances_buffer = upload_trees(gl, scene);
+    impostor->order_buffer =
+        gl_buffer(gl, (GLsizeiptr)((count + 1) * sizeof(uint32_t)), NULL, GL_DYNAMIC_STORAGE_BIT);
+    impostor->vertices = gl_vertex_array(gl);
+    gl->VertexArrayElementBuffer(impostor->vertices,
+                                 upload_indices(gl, impostor->fans_quad, impostor->fans_hull));
+    return gl_check(gl, "impostors", workspace->error);
+}
+
+/* The three parts of a source: before the stages, the vertex and the fragment stage; "" where
+ * absent. */
+static void split_stages(struct arena *arena, const char *source, const char *parts[3])
+{
+    static const char *const marks[2] = {"#pragma stage vertex", "#pragma stage fragment"};
+    const char *vertex = strstr(source, marks[0]), *fragment = strstr(source, marks[1]);
+    const char *end = source + strlen(source);
+    fragment = fragment ? fragment : end;
+    vertex = vertex ? vertex : fragment;
+    parts[0] = arena_printf(arena, "%.*s", (int)(vertex - source), source);
+    size_t skip = vertex < fragment ? strlen(marks[0]) : 0;
+    parts[1] =
+        arena_printf(arena, "%.*s", (int)(fragment - vertex - (ptrdiff_t)skip), vertex + skip);
+    parts[2] = fragment < end ? fragment + strlen(marks[1]) : "";
+}
+
+enum status impostor_program(struct workspace *workspace, const struct impostor *impostor,
+                             const char *name, const char *source, const char *defines,
+                             GLuint *program)
+{
+    struct arena *scratch = arena_create(0);
+    const char *shared[3], *own[3];
+    split_stages(scratch, impostor_glsl, shared);
+    split_stages(scratch, source, own);
+    const char *text =
+        arena_printf(scratch, "%s%s\n#pragma stage vertex\n%s%s\n#pragma stage fragment\n%s%s",
+                     shared[0], own[0], shared[1], own[1], shared[2], own[2]);
+    static const char *const modes[] = {"", "STRAIGHT 1\nALPHA_TEST 1\n",
+                                        "STRAIGHT 1\nALPHA_COVERAGE 1\n"};
+    const char *all =
+        arena_printf(scratch, "%s%s%s", defines ? defines : "", modes[impostor->alpha],
+                     impostor->atlas->depth ? "DEPTH 1\n" : "");
+    enum status status = gl_program(workspace->gl, name, text, all, program, workspace->error);
+    arena_destroy(scratch);
+    return status;
+}
+
+/* The multisampled twin of a target; a twin of another size or format is replaced. */
+static enum status twin(struct workspace *workspace, struct impostor *impostor,
+                        const struct target *target)
+{
+    struct target *twin = &impostor->multisampled;
+    if (twin->framebuffer && twin->width_px == target->width_px &&
+        twin->height_px == target->height_px && twin->format == target->format)
+        return STATUS_OK;
+    if (twin->framebuffer) {
+        gl_delete_texture(workspace->gl, twin->color);
+        gl_delete_texture(workspace->gl, twin->depth);
+    }
+    memset(twin, 0, sizeof *twin);
+    return gl_target_multisample(workspace->gl, target, 4, twin, workspace->error);
+}
+
+enum status impostor_begin(struct workspace *workspace, struct impostor *impostor,
+                           const struct view *view, struct target *target, struct cull_list *list)
+{
+    struct gl *gl = workspace->gl;
+    GLuint framebuffer = target->framebuffer;
+    if (impostor->alpha == ATLAS_COVERAGE) {
+        enum status status = twin(workspace, impostor, target);
+        if (status != STATUS_OK)
+            return status;
+        framebuffer = impostor->multisampled.framebuffer;
+    }
+    gl->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    backdrop_draw(workspace, impostor->backdrop, view);
+    *list = cull_view(impostor->cull, view,
+                      impostor->alpha == ATLAS_BLEND ? CULL_BACK_TO_FRONT : CULL_FRONT_TO_BACK);
+    if (list->count > 0)
+        gl->NamedBufferSubData(impostor->order_buffer, 0,
+                               (GLsizeiptr)(list->count * sizeof *list->instances),
+                               list->instances);
+    if (impostor->alpha == ATLAS_BLEND) {
+        gl->Enable(GL_BLEND);
+        gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        gl->DepthMask(GL_FALSE);
+    }
+    return STATUS_OK;
+}
+
+void impostor_use(struct workspace *workspace, const struct impostor *impostor, GLuint program,
+                  const struct view *view, size_t first)
+{
+    struct gl *gl = workspace->gl;
+    const struct atlas *atlas = impostor->atlas;
+    const GLuint buffers[4] = {impostor->instances_buffer, impostor->order_buffer,
+                               atlas->views_buffer, atlas->species_buffer};
+    gl->UseProgram(program);
+    gl->BindVertexArray(impostor->vertices);
+    for (GLuint i = 0; i < 4; i++)
+        gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
+    gl->BindTextureUnit(0, atlas->albedo);
+    gl->BindTextureUnit(1, atlas->light);
+    gl->BindTextureUnit(2, atlas->depth);
+    shade_uniforms(workspace, program, impostor->scene, view);
+    gl->Uniform1i(gl_uniform(gl, program, "first_tree"), (GLint)first);
+    gl->Uniform2f(gl_uniform(gl, program, "layer_px"), (float)atlas->width_px,
+                  (float)atlas->height_px);
+    gl->Uniform1f(gl_uniform(gl, program, "pixel_m"), 1 / cull_focal_px(view));
+    gl->Uniform1i(gl_uniform(gl, program, "last_level"), atlas->levels - 1);
+    gl->Uniform2f(gl_uniform(gl, program, "depth_terms"), -view->projection[2][2],
+                  view->projection[3][2]);
+}
+
+void impostor_draw(struct workspace *workspace, const struct impostor *impostor, int corners,
+                   size_t fans)
+{
+    size_t offset = corners == 4 ? 0 : 6 * impostor->fans_quad;
+    if (fans > 0)
+        gl_draw_elements(workspace->gl, GL_TRIANGLES, (GLsizei)(fans * 3 * (size_t)(corners - 2)),
+                         GL_UNSIGNED_INT, offset * sizeof(uint32_t), 1, 0, 0);
+}
+
+size_t impostor_near_count(const struct impostor *impostor, const struct view *view,
+                           const struct cull_list *list, float area_px)
+{
+    float focal = cull_focal_px(view), depth_m = focal * sqrtf(impostor->area_m2 / area_px);
+    bool far_first = impostor->alpha == ATLAS_BLEND;
+    size_t low = 0, high = list->count; /* how many at the near end are nearer than depth_m */
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        float depth = list->depths_m[far_first ? list->count - 1 - middle : middle];
+        if (depth < depth_m)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < impostor->fans_hull ? low : impostor->fans_hull;
+}
+
+enum status impostor_end(struct workspace *workspace, const struct impostor *impostor,
+                         struct target *target, const char *where)
+{
+    struct gl *gl = workspace->gl;
+    gl->Disable(GL_BLEND);
+    gl->DepthMask(GL_TRUE);
+    gl->BindVertexArray(0);
+    gl->UseProgram(0);
+    for (GLuint i = 0; i < 3; i++)
+        gl->BindTextureUnit(i, 0);
+    for (GLuint i = 0; i < 4; i++)
+        gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
+    if (impostor->alpha == ATLAS_COVERAGE)
+        gl_target_resolve(gl, &impostor->multisampled, target);
+    return gl_check(gl, where, workspace->error);
+}

@@ -1,0 +1,170 @@
+// What impostors share: trees, pictures and light of the atlas (harness/bake/atlas.h), coverage, fog. A method adds its
+// vertex stage. VIEWS pictures are mixed in a fragment; CORNERS is 4 or 8.
+uniform vec2 depth_terms;  // ndc z = x + y / distance along the view
+
+#pragma stage vertex
+struct tree {
+    vec4 place;  // position, scale
+    vec4 turn;   // cos, sin of the rotation, species, 0
+};
+
+struct picture {
+    vec4 right_s, up_t, toward_area;  // plane, corner of the layer
+    vec4 bounds;                      // low, high
+    vec4 depth_plane;
+    vec2 hull[8];
+};
+
+struct plant {
+    vec4 shape;   // centre's height, radius, texel (m), first view
+    vec4 albedo;  // scale
+    vec4 light[15];
+};
+
+layout(std430, binding = 0) readonly buffer trees_buffer { tree trees[]; };
+layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
+layout(std430, binding = 2) readonly buffer pictures_buffer { picture pictures[]; };
+layout(std430, binding = 3) readonly buffer plants_buffer { plant plants[]; };
+
+uniform int first_tree;
+uniform vec2 layer_px;    // size of a layer
+uniform float pixel_m;    // metres across a pixel at a distance of 1 m
+uniform int last_level;
+
+out vec4 place[VIEWS];              // texture coordinates, layer, weight
+flat out vec4 light_factors[VIEWS]; // of the four channels
+flat out vec3 light_rest;           // light without channels, of each picture
+flat out vec4 shared_terms;         // albedo scale, level, radius (m, world), tree
+out float clear_share;              // what the fog leaves
+
+vec3 to_tree(vec3 v, tree t)
+{
+    return rotate_y(v, t.turn.x, -t.turn.y);
+}
+
+vec3 center_of(tree t, plant p)
+{
+    return t.place.xyz + vec3(0.0, p.shape.x * t.place.w, 0.0);
+}
+
+// The level whose texels are as large as pixels at the tree's centre.
+float level_of(tree t, plant p)
+{
+    float away = (view_projection * vec4(center_of(t, p), 1.0)).w;
+    float level = log2(max(away * pixel_m / (p.shape.z * t.place.w), 1.0));
+    return min(floor(level + 0.5), float(last_level));
+}
+
+// Half a texel of that level: as far as bilinear filtering carries coverage beyond a picture's edge.
+float margin_of(plant p, float level)
+{
+    return 0.5 * exp2(level) * p.shape.z;
+}
+
+vec2 corner_of(vec2 low, vec2 high, int corner)
+{
+    return vec2(corner == 1 || corner == 2 ? high.x : low.x, corner >= 2 ? high.y : low.y);
+}
+
+// Picture k of the quad: its light from the sun and its place st on the picture's plane.
+void set_picture(int k, tree t, plant p, int index, vec2 st, float weight)
+{
+    picture pic = pictures[index];
+    vec3 sun = to_tree(sun_direction, t);
+    sun = vec3(dot(sun, pic.right_s.xyz), dot(sun, pic.up_t.xyz), dot(sun, pic.toward_area.xyz));
+    vec4 q0 = vec4(1.0, sun * sun);
+    vec4 q1 = vec4(sun.x * sun.y, sun.x * sun.z, sun.y * sun.z, sun.x);
+    vec4 q2 = vec4(sun.yz, 0.0, 0.0);
+    for (int i = 0; i < 4; i++)
+        light_factors[k][i] = dot(p.light[3 * i + 3], q0) + dot(p.light[3 * i + 4], q1) +
+                              dot(p.light[3 * i + 5], q2);
+    light_rest[k] = dot(p.light[0], q0) + dot(p.light[1], q1) + dot(p.light[2], q2);
+    place[k] = vec4((st - vec2(pic.right_s.w, pic.up_t.w)) / (p.shape.z * layer_px), float(index),
+                    weight);
+}
+
+// The quad's corner at `own` (m, plant's axes, from its centre); what is seen there lies depth_m nearer to the eye.
+void set_corner(tree t, plant p, vec3 own, float depth_m, float level, uint number)
+{
+    vec3 world = center_of(t, p) + t.place.w * rotate_y(own, t.turn.x, t.turn.y);
+    float away = max(distance(world, eye_m), 1e-6);
+    float share = clamp(depth_m * t.place.w / away, -1.0, 0.9);
+    gl_Position = view_projection * vec4(world, 1.0);
+    // Moving along the ray to the eye changes depth alone: z + share / (1 - share) * projection[3][2].
+    if (gl_Position.w > 0.0 && gl_Position.z > -gl_Position.w)
+        gl_Position.z = max(gl_Position.z + depth_terms.y * share / (1.0 - share),
+                            -0.99999 * gl_Position.w);
+    clear_share = fog_density > 0.0 ? exp(-fog_density * away * (1.0 - share)) : 1.0;
+    shared_terms = vec4(p.albedo.x, level, p.shape.y * t.place.w, float(number));
+}
+
+#pragma stage fragment
+layout(binding = 0) uniform sampler2DArray albedo_map;
+layout(binding = 1) uniform sampler2DArray light_map;
+layout(binding = 2) uniform sampler2DArray depth_map;
+in vec4 place[VIEWS];
+flat in vec4 light_factors[VIEWS];
+flat in vec3 light_rest;
+flat in vec4 shared_terms;
+in float clear_share;
+layout(location = 0) out vec4 color;
+
+uint scramble(uint x)
+{
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+// Coverage as samples of a pixel: right in the mean, and independent from tree to tree, so that layers add up as
+// they do in blending.
+int sample_mask(float coverage)
+{
+    uint random = scramble(uint(gl_FragCoord.x) + (uint(gl_FragCoord.y) << 12) +
+                           scramble(uint(shared_terms.w)));
+    uint count = uint(min(4.0 * coverage + float(random >> 8) / 16777216.0, 4.0));
+    uint mask = (1u << count) - 1u, turn = random & 3u;
+    return int(((mask << turn) | (mask >> (4u - turn))) & 15u);
+}
+
+void main()
+{
+    vec3 radiance = vec3(0.0);
+    float coverage = 0.0, depth = 0.0;
+    for (int k = 0; k < VIEWS; k++) {
+        vec4 texel = textureLod(albedo_map, place[k].xyz, shared_terms.y);
+        vec4 light = textureLod(light_map, place[k].xyz, shared_terms.y);
+        float diffuse = max(light_rest[k] + dot(light, light_factors[k]), 0.0);
+        vec3 lit = texel.rgb * (sun_radiance * diffuse + ambient);
+#ifdef STRAIGHT
+        lit *= texel.a;
+#endif
+        float weight = VIEWS == 1 ? 1.0 : place[k].w;
+        radiance += weight * lit;
+        coverage += weight * texel.a;
+#ifdef DEPTH
+        depth += weight * texel.a * textureLod(depth_map, place[k].xyz, shared_terms.y).r;
+#endif
+    }
+#ifdef ALPHA_TEST
+    if (coverage < 0.5)
+        discard;
+#endif
+    radiance *= shared_terms.x;
+#ifdef STRAIGHT
+    radiance /= max(coverage, 1e-6);
+    color = vec4(mix(fog_color, radiance, clear_share), 1.0);
+#else
+    color = vec4(mix(fog_color * coverage, radiance, clear_share), coverage);
+#endif
+#ifdef ALPHA_COVERAGE
+    gl_SampleMask[0] = sample_mask(coverage);
+#endif
+#ifdef DEPTH
+    float nearer = (2.0 * depth / max(coverage, 1e-6) - 1.0) * shared_terms.z;
+    float away = max(1.0 / gl_FragCoord.w - nearer, 1e-4);
+    gl_FragDepth = clamp(0.5 + 0.5 * (depth_terms.x + depth_terms.y / away), 0.0, 1.0);
+#endif
+}

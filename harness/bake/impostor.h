@@ -1,0 +1,57 @@
+/* Trees drawn as textured quads: what billboards and crossed quads share. The atlas, the trees on
+ * the GL, their order, the state of the three ways to treat coverage. The shader's part is
+ * impostor.glsl. */
+#ifndef TREELINE_BAKE_IMPOSTOR_H
+#define TREELINE_BAKE_IMPOSTOR_H
+
+#include "bake/atlas.h"
+#include "bake/backdrop.h"
+#include "bake/cull.h"
+
+struct impostor {
+    const struct scene *scene;
+    struct atlas *atlas;
+    struct cull *cull;
+    struct backdrop *backdrop;
+    enum atlas_alpha alpha;
+    GLuint vertices; /* no attributes; the index buffer of fans */
+    GLuint instances_buffer, order_buffer;
+    size_t fans_quad,
+        fans_hull; /* how many fans of 4 and of ATLAS_HULL corners the index buffer holds */
+    struct target multisampled; /* of ATLAS_COVERAGE; made at the first draw */
+    float area_m2;              /* mean silhouette area of the trees */
+};
+
+/* The scene's part: backdrop, atlas, trees, index buffer for quads_each quads a tree. */
+enum status impostor_prepare(struct workspace *workspace, const struct scene *scene,
+                             const struct atlas_request *request, size_t quads_each,
+                             struct impostor **impostor);
+
+/* Links impostor.glsl and a method's own source; defines may be NULL. Adds ALPHA_TEST,
+ * ALPHA_COVERAGE, DEPTH. */
+enum status impostor_program(struct workspace *workspace, const struct impostor *impostor,
+                             const char *name, const char *source, const char *defines,
+                             GLuint *program);
+
+/* Binds target (or its multisampled twin), draws the backdrop, culls, sorts (back to front for
+ * blending, else front to back) and uploads the order. Returns the list of trees to draw. */
+enum status impostor_begin(struct workspace *workspace, struct impostor *impostor,
+                           const struct view *view, struct target *target, struct cull_list *list);
+
+/* Uses a program, with all uniforms and buffers set, trees [first, first + count) of the list to
+ * come. */
+void impostor_use(struct workspace *workspace, const struct impostor *impostor, GLuint program,
+                  const struct view *view, size_t first);
+/* Draws fans (corners: 4 or ATLAS_HULL) with the program in use. */
+void impostor_draw(struct workspace *workspace, const struct impostor *impostor, int corners,
+                   size_t fans);
+
+/* How many trees at the near end of the list cover more than about area_px pixels each. */
+size_t impostor_near_count(const struct impostor *impostor, const struct view *view,
+                           const struct cull_list *list, float area_px);
+
+/* Resolves and restores the state that backdrop_draw leaves. */
+enum status impostor_end(struct workspace *workspace, const struct impostor *impostor,
+                         struct target *target, const char *where);
+
+#endif
