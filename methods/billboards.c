@@ -1,0 +1,127 @@
+/* billboards: one picture a tree on a quad that turns to the eye, from an atlas of views. */
+#include "bake/impostor.h"
+#include "method/method.h"
+
+#include "billboards.glsl.h"
+
+struct options {
+    int views, layout, pick, resolution, alpha, samples;
+    bool depth;
+};
+
+/* clang-format off */
+static const struct option table[] = {
+    OPTION(struct options, views, 16, 1, 1024, "",
+           "pictures a species; on the square layouts the largest n x n up to it"),
+    OPTION_WORD(struct options, layout, 0, "circle|hemisphere|octahedron",
+                "directions: on the horizon, above it, or all"),
+    OPTION_WORD(struct options, pick, 0, "nearest|blended",
+                "one picture, or the 2 (circle) or 3 (square layouts) nearest by weight"),
+    OPTION(struct options, resolution, 256, 8, 2048, "px", "texels along a plant's longest extent"),
+    OPTION_WORD(struct options, alpha, 0, "blend|test|coverage",
+                "sorted blending, alpha test, or 4 samples a pixel"),
+    OPTION(struct options, samples, 4, 1, 8, "",
+           "samples along a texel's side when pictures are baked"),
+    OPTION(struct options, depth, 0, 0, 1, "",
+           "depth from the picture in each fragment, not from a plane"),
+    OPTION_END,
+};
+/* clang-format on */
+
+/* From this many pixels on the polygon of 8 corners costs less than the transparent corners of a
+ * quad. */
+static const float hull_area_px = 1500;
+
+struct state {
+    struct impostor *impostor;
+    GLuint quads, hulls; /* hulls: 0 where several pictures are mixed */
+    int side;
+};
+
+/* The level of detail is the pictures' resolution. */
+static int resolution_of(const struct options *options, enum lod lod)
+{
+    int divisor = lod == LOD_LOW ? 4 : lod == LOD_INTERMEDIATE ? 2 : 1;
+    return options->resolution / divisor < 8 ? 8 : options->resolution / divisor;
+}
+
+static enum status programs(struct workspace *workspace, const struct options *options,
+                            struct state *state)
+{
+    int views = options->pick == 0 ? 1 : options->layout == VIEWS_CIRCLE ? 2 : 3;
+    const char *quads =
+        arena_printf(workspace->arena, "LAYOUT %d\nVIEWS %d\nCORNERS 4\n", options->layout, views);
+    const char *hulls = arena_printf(workspace->arena, "LAYOUT %d\nVIEWS %d\nCORNERS %d\n",
+                                     options->layout, views, ATLAS_HULL);
+    enum status status = impostor_program(workspace, state->impostor, "billboards", billboards_glsl,
+                                          quads, &state->quads);
+    if (status == STATUS_OK && views == 1)
+        status = impostor_program(workspace, state->impostor, "billboards", billboards_glsl, hulls,
+                                  &state->hulls);
+    return status;
+}
+
+static enum status prepare(struct workspace *workspace, const struct scene *scene,
+                           const void *values, void **result)
+{
+    const struct options *options = values;
+    struct state *state = *result = ARENA_NEW(workspace->arena, struct state);
+    enum views_layout layout = (enum views_layout)options->layout;
+    struct atlas_request request = {
+        .layout = layout,
+        .side = views_side(layout, (size_t)options->views),
+        .resolution_px = resolution_of(options, workspace->lod),
+        .samples = options->samples,
+        .alpha = (enum atlas_alpha)options->alpha,
+        .depth = options->depth,
+    };
+    state->side = (int)request.side;
+    enum status status = impostor_prepare(workspace, scene, &request, 1, &state->impostor);
+    return status == STATUS_OK ? programs(workspace, options, state) : status;
+}
+
+static void draw_trees(struct workspace *workspace, const struct state *state,
+                       const struct view *view, GLuint program, size_t first, size_t count)
+{
+    if (count == 0)
+        return;
+    impostor_use(workspace, state->impostor, program, view, first);
+    workspace->gl->Uniform1i(gl_uniform(workspace->gl, program, "side"), state->side);
+    impostor_draw(workspace, state->impostor, program == state->hulls ? ATLAS_HULL : 4, count);
+}
+
+static enum status draw(struct workspace *workspace, void *own, const struct view *view,
+                        struct target *target)
+{
+    struct state *state = own;
+    struct cull_list list;
+    enum status status = impostor_begin(workspace, state->impostor, view, target, &list);
+    if (status != STATUS_OK)
+        return status;
+    size_t near =
+        state->hulls ? impostor_near_count(state->impostor, view, &list, hull_area_px) : 0;
+    size_t far = list.count - near;
+    if (state->impostor->alpha == ATLAS_BLEND) {
+        draw_trees(workspace, state, view, state->quads, 0, far);
+        draw_trees(workspace, state, view, state->hulls, far, near);
+    } else {
+        draw_trees(workspace, state, view, state->hulls, 0, near);
+        draw_trees(workspace, state, view, state->quads, near, far);
+    }
+    return impostor_end(workspace, state->impostor, target, "billboards");
+}
+
+extern const struct method billboards_method;
+const struct method billboards_method = {
+    .abi = METHOD_ABI,
+    .name = "billboards",
+    .summary = "one view-facing quad a tree, from pictures of it from many sides",
+    .source =
+        "Rohlf and Helman, IRIS Performer, SIGGRAPH 1994, doi:10.1145/192161.192262; Castano, "
+        "Computing Alpha Mipmaps, 2010; Cigolle et al., JCGT 3(2), 2014",
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .options = table,
+    .options_size = sizeof(struct options),
+    .prepare = prepare,
+    .draw = draw,
+};
