@@ -1,0 +1,95 @@
+/* cross-quads: a few fixed vertical planes that cross in a tree's axis, each with the tree's
+ * picture. */
+#include "bake/impostor.h"
+#include "method/method.h"
+
+#include "cross-quads.glsl.h"
+
+struct options {
+    int planes, resolution, alpha, samples;
+    bool depth;
+};
+
+/* clang-format off */
+static const struct option table[] = {
+    OPTION(struct options, planes, 2, 2, 8, "", "vertical planes a tree, evenly turned"),
+    OPTION(struct options, resolution, 256, 8, 2048, "px", "texels along a plant's longest extent"),
+    OPTION_WORD(struct options, alpha, 0, "blend|test|coverage",
+                "sorted blending, alpha test, or 4 samples a pixel"),
+    OPTION(struct options, samples, 4, 1, 8, "",
+           "samples along a texel's side when pictures are baked"),
+    OPTION(struct options, depth, 0, 0, 1, "",
+           "depth from the picture in each fragment, not from the plane"),
+    OPTION_END,
+};
+/* clang-format on */
+
+struct state {
+    struct impostor *impostor;
+    GLuint program;
+    size_t planes, quads_each;
+};
+
+/* The level of detail is the pictures' resolution. */
+static int resolution_of(const struct options *options, enum lod lod)
+{
+    int divisor = lod == LOD_LOW ? 4 : lod == LOD_INTERMEDIATE ? 2 : 1;
+    return options->resolution / divisor < 8 ? 8 : options->resolution / divisor;
+}
+
+static enum status prepare(struct workspace *workspace, const struct scene *scene,
+                           const void *values, void **result)
+{
+    const struct options *options = values;
+    struct state *state = *result = ARENA_NEW(workspace->arena, struct state);
+    bool halves = options->alpha == ATLAS_BLEND;
+    struct atlas_request request = {
+        .layout = VIEWS_PLANES,
+        .side = (size_t)options->planes,
+        .resolution_px = resolution_of(options, workspace->lod),
+        .samples = options->samples,
+        .alpha = (enum atlas_alpha)options->alpha,
+        .depth = options->depth,
+    };
+    state->planes = (size_t)options->planes;
+    state->quads_each = halves ? 2 * state->planes : state->planes;
+    enum status status =
+        impostor_prepare(workspace, scene, &request, state->quads_each, &state->impostor);
+    if (status != STATUS_OK)
+        return status;
+    return impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
+                            halves ? "VIEWS 1\nHALVES 1\n" : "VIEWS 1\nHALVES 0\n",
+                            &state->program);
+}
+
+static enum status draw(struct workspace *workspace, void *own, const struct view *view,
+                        struct target *target)
+{
+    struct state *state = own;
+    struct gl *gl = workspace->gl;
+    struct cull_list list;
+    enum status status = impostor_begin(workspace, state->impostor, view, target, &list);
+    if (status != STATUS_OK)
+        return status;
+    if (list.count > 0) {
+        impostor_use(workspace, state->impostor, state->program, view, 0);
+        gl->Uniform1i(gl_uniform(gl, state->program, "planes"), (GLint)state->planes);
+        impostor_draw(workspace, state->impostor, 4, list.count * state->quads_each);
+    }
+    return impostor_end(workspace, state->impostor, target, "cross-quads");
+}
+
+extern const struct method cross_quads_method;
+const struct method cross_quads_method = {
+    .abi = METHOD_ABI,
+    .name = "cross-quads",
+    .summary = "fixed vertical planes that cross in a tree's axis",
+    .source =
+        "Meyer, Neyret and Poulin, Interactive Rendering of Trees with Shading and Shadows, 2001, "
+        "doi:10.1007/978-3-7091-6242-2_17 (previous work); Castano, Computing Alpha Mipmaps, 2010",
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .options = table,
+    .options_size = sizeof(struct options),
+    .prepare = prepare,
+    .draw = draw,
+};
