@@ -34,6 +34,7 @@ static void stage_open(struct stage *stage, const struct method *method, size_t 
     struct scene_request request = {
         .trees = trees, .seed = 1, .width_px = width_px, .height_px = height_px};
     must(scene_load(stage->arena, "tiny", &request, &stage->scene, &stage->error), stage, "scene");
+    stage->scene->fog.density_per_m = 0.01f; /* the scene itself asks for none */
     struct gl *gl = NULL;
     if (!(method->traits & TRAIT_CPU))
         must(gl_context_create(NULL, 2, &gl, &stage->error), stage, "context");
