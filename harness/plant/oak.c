@@ -36,7 +36,7 @@ struct options {
 static const struct option table[] = {
     OPTION(struct options, height, 15, 4, 40, "m", "height of the tree"),
     OPTION(struct options, width, 16, 3, 50, "m", "diameter of the crown"),
-    OPTION(struct options, leaf_length, 0.19, 0.02, 1, "m",
+    OPTION(struct options, leaf_length, 0.2, 0.02, 1, "m",
            "mean length of a leaf; each stands for a small spray, a real one is half as long"),
     OPTION(struct options, triangles, 100000, 40000, 4000000, "",
            "triangles of bark and leaves together; leaves have two, so an odd one is left out"),
@@ -89,7 +89,9 @@ static int add_node(struct oak *oak, struct vec position, int parent)
  * axes. */
 static struct vec crown_place(const struct oak *oak, struct vec in)
 {
-    double height = (double)oak->options->height, half = (double)oak->options->width / 2;
+    /* Twigs reach on. */
+    double height = 0.98 * (double)oak->options->height;
+    double half = 0.93 * (double)oak->options->width / 2;
     double middle = 0.47 * height;
     double y = middle + in.y * (in.y > 0 ? height - middle : 0.33 * height);
     return (struct vec){in.x * half, y, in.z * half};
