@@ -106,9 +106,9 @@ static void place_points(struct oak *oak)
         double y = 1 - 1.55 * (i + 0.5) / LUMPS, s, c;
         double across = sqrt(1 - y * y);
         grow_sincos(i * 0.381966011250105 + random_between(random, -0.03, 0.03), &s, &c);
-        double depth = random_between(random, 0.72, 0.90) - (i % 5 == 0 ? 0.34 : 0);
+        double depth = random_between(random, 0.72, 0.90) - (i % 5 == 2 ? 0.34 : 0);
         struct vec in = vec_scale((struct vec){across * c, y, across * s}, depth);
-        double radius = random_between(random, 0.17, 0.26) * (i % 5 == 0 ? 0.8 : 1);
+        double radius = random_between(random, 0.17, 0.26) * (i % 5 == 2 ? 0.8 : 1);
         for (int k = 0; k < POINTS_PER_LUMP; k++) {
             struct vec offset = random_in_ball(random);
             offset.y *= 0.75;
@@ -349,9 +349,15 @@ static void grow_oak_leaf(struct oak *oak, const struct twig *twig)
 static enum status build(struct arena *arena, const void *options, struct mesh **mesh,
                          struct error *error)
 {
+    const struct options *given = options;
+    double slender = (double)given->width / (double)given->height;
+    if (slender < 0.5 || slender > 3)
+        return error_set(
+            error, STATUS_INVALID, "width: %g is outside %g..%g, half to three times the height",
+            (double)given->width, 0.5 * (double)given->height, 3 * (double)given->height);
     struct arena *scratch = arena_create(0);
     struct oak *oak = ARENA_NEW(scratch, struct oak);
-    oak->options = options;
+    oak->options = given;
     oak->random = random_seed((uint64_t)oak->options->seed, 0x6f616b);
     oak->scale = (double)oak->options->height / 30 + (double)oak->options->width / 32;
     oak->nodes = ARENA_ARRAY(scratch, struct node, NODES_MAX + 1);

@@ -136,7 +136,8 @@ static void grow_branch(struct poplar *p, int k)
 {
     struct stem_point points[BRANCH_POINTS];
     double height = (double)p->options->height;
-    double half = 0.8 * (double)p->options->width / 2; /* twigs reach on */
+    double half = (double)p->options->width / 2, twigs_reach = 0.017 * height;
+    half = half > 1.5 * twigs_reach ? half - twigs_reach : half / 3;
     double u = (k + random_double(&p->random)) / BRANCHES;
     double t = 0.055 + 0.88 * u * (0.82 + 0.18 * u);
     struct stem_point root = on_trunk(p, t);
