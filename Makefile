@@ -168,7 +168,8 @@ install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/treeline $(DESTDIR)$(PREFIX)/share/treeline
 	install -m755 $(BINARY) $(DESTDIR)$(PREFIX)/bin/treeline
 	install -m755 $(IMAGE_SO) $(DESTDIR)$(PREFIX)/lib/treeline/
-	cp -r scenes reports/template $(DESTDIR)$(PREFIX)/share/treeline/
+	cp -r scenes $(DESTDIR)$(PREFIX)/share/treeline/
+	install -Dm644 -t $(DESTDIR)$(PREFIX)/share/treeline/reports/template reports/template/*
 
 FORMAT := $(shell git ls-files '*.c' '*.h' '*.cpp' 2>/dev/null)
 format:

@@ -8,17 +8,32 @@
 
 /* One row of every table: a cell over its successful repetitions. */
 struct summary {
-    const struct result *first; /* a successful repetition, or the first failed one */
-    size_t repetitions, failures;
+    const struct result *first;   /* a successful repetition, one with compared pictures before one
+                                     without; or the first failed one */
+    size_t repetitions, failures; /* that succeeded; that did not */
     struct {
         double value, low, high;
     } frame_seconds; /* median over repetitions of each one's median, with its 95 % interval */
-    bool on_front;   /* Pareto front of frame time and FLIP within its scene and tree count */
+    bool on_front;   /* Pareto front of frame time and FLIP (same effects) among comparable cells;
+                        never the method null, which draws no tree */
 };
+/* In the order in which the cells first occur in the run. */
 struct summary *report_summaries(struct arena *arena, const struct run *run, size_t *count);
 
-/* Writes OUT/index.html (self-contained), OUT/plots/NAME.{dat,gp,svg,png}, OUT/tables/results.{md,csv,tex}.
- * Without gnuplot: STATUS_UNAVAILABLE after the tables were written. */
+/* Of one scene, tree count, size and seed: the cells that a front is made of. */
+bool report_comparable(const struct result *a, const struct result *b);
+size_t report_trees(const struct result *result);
+bool report_is_floor(const struct result *result); /* method null */
+/* Mean FLIP over the compared views, same effects; NaN without one. */
+double report_flip(const struct result *result);
+
+/* Writes OUT/index.html (self-contained), OUT/plots/NAME.{dat,gp,svg,png},
+ * OUT/tables/results.{md,csv,tex} and OUT/pictures/NAME.png (full size). A picture or reference
+ * that is missing is said on the page. Without gnuplot: STATUS_UNAVAILABLE, after the tables and a
+ * page that says so were written. */
+enum status report_write_run(struct arena *arena, const struct run *run, const char *out_folder,
+                             struct error *error);
+/* The same from a run on disk: its folder or its file. */
 enum status report_write(const char *run_path, const char *out_folder, struct error *error);
 
 #endif

@@ -1,0 +1,175 @@
+/* Inside the report: what every table, plot and page is made from, derived once from the run. */
+#ifndef TREELINE_REPORT_BOOK_H
+#define TREELINE_REPORT_BOOK_H
+
+#include "report/report.h"
+
+#include <stdio.h>
+
+/* The numbers of a row. Every number of every table, plot and page is one of these, in SI units. */
+#define FRAME_COLUMNS(X)                                                                           \
+    X(repetitions, "", 0, "repetitions that succeeded")                                            \
+    X(failures, "", -1, "repetitions that failed")                                                 \
+    X(frame_seconds, "s", -1, "median over repetitions of each one's median frame time")           \
+    X(frame_seconds_low, "s", 0, "lower end of its 95 % interval (below 3 repetitions: smallest)") \
+    X(frame_seconds_high, "s", 0, "upper end of its 95 % interval (below 3 repetitions: largest)") \
+    X(fps, "1/s", +1, "1 / frame_seconds")                                                         \
+    X(frames, "", 0, "timed frames of all repetitions")                                            \
+    X(flicker_mean, "", -1, "rmse of the frame-to-frame change against the reference's")           \
+    X(flicker_peak, "", -1, "its largest pair of views")                                           \
+    X(flicker_floor, "", -1, "what noise alone would give")                                        \
+    X(same_standard_error, "", -1, "of the references with the same effects, mean over views")     \
+    X(full_standard_error, "", -1, "of the references with all effects, mean over views")
+
+enum column_index {
+#define COLUMN_ENUM(field, unit, better, doc) COLUMN_##field,
+    FRAME_COLUMNS(COLUMN_ENUM) RESULT_COLUMNS(COLUMN_ENUM)
+#undef COLUMN_ENUM
+#define COLUMN_ENUM(field, word, better, domain, doc) COLUMN_same_##field,
+        METRIC_LIST(COLUMN_ENUM)
+#undef COLUMN_ENUM
+#define COLUMN_ENUM(field, word, better, domain, doc) COLUMN_full_##field,
+            METRIC_LIST(COLUMN_ENUM)
+#undef COLUMN_ENUM
+#define COLUMN_ENUM(field, word, better, domain, doc) COLUMN_floor_##field,
+                METRIC_LIST(COLUMN_ENUM)
+#undef COLUMN_ENUM
+                    COLUMNS_COUNT
+};
+
+struct column {
+    const char *key, *unit, *doc;
+    int better;
+};
+extern const struct column column_table[COLUMNS_COUNT];
+
+/* A column as people read it: heading and unit for which the value is multiplied by scale. */
+struct shown {
+    enum column_index column;
+    const char *heading, *unit;
+    double scale;
+};
+extern const struct shown shown_table[]; /* of the results table */
+extern const size_t shown_count;
+
+/* One cell. */
+struct row {
+    const struct summary *summary;
+    const struct result
+        *seen;     /* the successful repetition with compared views, else summary->first */
+    bool ok;       /* at least one repetition succeeded */
+    bool compared; /* has errors */
+    bool is_floor; /* method null: draws no tree, takes part in no front */
+    const char *method, *label; /* label: method and what tells it from the others in its group */
+    const char *variant;        /* the label without the method; "" when the method is enough */
+    size_t method_index;        /* colour and symbol */
+    size_t series; /* cells that differ in scene, trees, size and seed alone share one */
+    size_t group;
+    size_t trees;
+    double values[COLUMNS_COUNT]; /* NaN: not measured */
+};
+
+/* Cells that may be compared: of one scene, tree count, size and seed. */
+struct group {
+    const char *scene, *title, *slug; /* slug: for file names and anchors */
+    size_t trees;
+    int width_px, height_px;
+    uint64_t seed;
+    size_t *rows; /* indices into book.rows */
+    size_t rows_count;
+    size_t family; /* groups that differ in trees alone share one */
+};
+
+struct book {
+    struct arena *arena;
+    const struct run *run;
+    const char *run_name;
+    struct row *rows;
+    size_t rows_count;
+    struct group *groups; /* in order of scene, size, seed, trees */
+    size_t groups_count;
+    const char **methods; /* sorted */
+    size_t methods_count;
+    const char **series; /* labels, by first appearance */
+    size_t series_count;
+    const char **families; /* titles */
+    size_t families_count;
+    bool effects_differ; /* some cell draws less than its scene asks for */
+};
+struct book *book_make(struct arena *arena, const struct run *run);
+/* Rows of a group on the front, fastest first; front holds group->rows_count places. */
+size_t book_front(const struct book *book, const struct group *group, size_t *front);
+
+/* Numbers for people. Not measured: an en dash. */
+struct number {
+    char text[40];
+};
+struct number number_plain(double value, int digits); /* significant digits, thousands separated */
+struct number number_short(double value, int digits); /* 98.3 k, 1.2 M */
+struct number number_exact(double value);             /* shortest that reads back; NaN: "" */
+/* "12.3 ms" or "1.23 s". */
+struct number number_seconds(double seconds);
+
+void html_put(FILE *out, const char *text);
+/* Writes what an open_memstream collected; closes it and frees. */
+enum status sheet_write(FILE *sheet, char **data, const size_t *size, const char *path,
+                        struct error *error);
+
+enum status export_tables(const struct book *book, const char *folder, struct error *error);
+
+/* Sentences. */
+void answer_headline(const struct book *book, FILE *out);
+void answer_fronts(const struct book *book, FILE *out);  /* HTML table: a row per group */
+void answer_overall(const struct book *book, FILE *out); /* HTML table: a row per series */
+
+/* Colours: light for gnuplot, both as CSS variables. */
+enum tint { TINT_INK, TINT_MUTED, TINT_FAINT, TINT_METHOD }; /* TINT_METHOD + k, k < TINT_METHODS */
+enum { TINT_METHODS = 8 };
+unsigned tint_rgb(size_t tint); /* 0xRRGGBB, light */
+size_t tint_method(const struct book *book, size_t method_index);
+const char *symbol_html(const struct book *book,
+                        size_t method_index); /* a small inline SVG's body */
+int symbol_gnuplot(const struct book *book, size_t method_index, bool filled); /* point type */
+const char *tint_variable(size_t tint);
+void theme_css(FILE *out);
+/* gnuplot's SVG made fit for light and dark: its colours become CSS variables, its ids get the
+ * prefix. alone: with its own style sheet, for a file; else for inclusion in the page. */
+void theme_svg(const char *svg, const char *prefix, const char *title, bool alone, FILE *out);
+
+/* One figure. Files FOLDER/NAME.{dat,gp,svg,png} and NAME-narrow.svg. */
+struct figure {
+    const char *name, *title;
+    char *caption;          /* HTML; NULL: none */
+    char *svg, *svg_narrow; /* for inclusion; NULL: could not be drawn */
+};
+/* Figures of a group: errors against frame time. metric: COLUMN_same_flip ... */
+enum status plot_trade(const struct book *book, const struct group *group, enum column_index metric,
+                       const char *folder, struct figure *figure, struct error *error);
+/* Frame rate against trees of a family. *drawn is false when there are fewer than two tree counts.
+ */
+enum status plot_growth(const struct book *book, size_t family, const char *folder,
+                        struct figure *figure, bool *drawn, struct error *error);
+/* Error against distance over a group's views. *drawn is false when the distance hardly changes. */
+enum status plot_distance(const struct book *book, const struct group *group, const char *folder,
+                          struct figure *figure, bool *drawn, struct error *error);
+
+/* Writes the group's pictures as HTML and as OUT/pictures/NAME.png. budget_px: pixels a thumbnail
+ * may have. */
+struct gallery {
+    const struct book *book;
+    const char *out_folder;
+    int thumbnail_px; /* width */
+    size_t missing;   /* pictures that could not be shown */
+};
+void gallery_start(struct gallery *gallery, const struct book *book, const char *out_folder);
+void gallery_group(struct gallery *gallery, const struct group *group, FILE *out);
+
+struct plots {
+    struct figure (*trade)[4]; /* a group: FLIP same, FLIP full, rmse same, rmse full */
+    struct figure *growth;     /* a family */
+    struct figure *distance;   /* a group */
+};
+enum status page_write(const struct book *book, const struct plots *plots, const char *no_plots,
+                       const char *out_folder, struct error *error);
+
+#endif
