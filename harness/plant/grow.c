@@ -177,9 +177,12 @@ void grow_tube(struct grow *grow, const struct stem_point *points, size_t count)
         sides = points[i].sides;
     }
     const float tint[3] = {0.85f, 0.85f, 0.82f};
-    uint32_t apex = vertex(grow, points[count - 1].position_m, direction, tint);
-    for (int j = 0; j < sides; j++)
+    /* One apex a side, so that each keeps its side's normal: shared, they would all look along the
+     * stem. */
+    for (int j = 0; j < sides; j++) {
+        uint32_t apex = vertex(grow, points[count - 1].position_m, direction, tint);
         triangle(grow, below + (uint32_t)j, below + (uint32_t)((j + 1) % sides), apex);
+    }
     grow->bark_triangles_count = grow->triangles_count;
 }
 

@@ -1,4 +1,5 @@
 /* Textures of an imported mesh: decoded, turned upright, colour and opacity put together. */
+#include "base/color.h"
 #include "plant/import_steps.h"
 #include "wall/image.h"
 
@@ -33,12 +34,6 @@ static enum status read_embedded(struct arena *arena, const struct import_textur
                              : image_read(arena, path, true, image, error);
     unlink(path);
     return status;
-}
-
-/* IEC 61966-2-1. */
-static float srgb_decode(float c)
-{
-    return c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f);
 }
 
 /* Uncompressed texels: blue, green, red, alpha of 8 bits, sRGB. */

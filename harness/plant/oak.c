@@ -36,7 +36,7 @@ struct options {
 static const struct option table[] = {
     OPTION(struct options, height, 15, 4, 40, "m", "height of the tree"),
     OPTION(struct options, width, 16, 3, 50, "m", "diameter of the crown"),
-    OPTION(struct options, leaf_length, 0.19, 0.02, 1, "m",
+    OPTION(struct options, leaf_length, 0.2, 0.02, 1, "m",
            "mean length of a leaf; each stands for a small spray, a real one is half as long"),
     OPTION(struct options, triangles, 100000, 40000, 4000000, "",
            "triangles of bark and leaves together; leaves have two, so an odd one is left out"),
@@ -89,7 +89,9 @@ static int add_node(struct oak *oak, struct vec position, int parent)
  * axes. */
 static struct vec crown_place(const struct oak *oak, struct vec in)
 {
-    double height = (double)oak->options->height, half = (double)oak->options->width / 2;
+    /* Twigs reach on. */
+    double height = 0.98 * (double)oak->options->height;
+    double half = 0.93 * (double)oak->options->width / 2;
     double middle = 0.47 * height;
     double y = middle + in.y * (in.y > 0 ? height - middle : 0.33 * height);
     return (struct vec){in.x * half, y, in.z * half};
@@ -104,9 +106,9 @@ static void place_points(struct oak *oak)
         double y = 1 - 1.55 * (i + 0.5) / LUMPS, s, c;
         double across = sqrt(1 - y * y);
         grow_sincos(i * 0.381966011250105 + random_between(random, -0.03, 0.03), &s, &c);
-        double depth = random_between(random, 0.72, 0.90) - (i % 5 == 0 ? 0.34 : 0);
+        double depth = random_between(random, 0.72, 0.90) - (i % 5 == 2 ? 0.34 : 0);
         struct vec in = vec_scale((struct vec){across * c, y, across * s}, depth);
-        double radius = random_between(random, 0.17, 0.26) * (i % 5 == 0 ? 0.8 : 1);
+        double radius = random_between(random, 0.17, 0.26) * (i % 5 == 2 ? 0.8 : 1);
         for (int k = 0; k < POINTS_PER_LUMP; k++) {
             struct vec offset = random_in_ball(random);
             offset.y *= 0.75;
@@ -347,9 +349,15 @@ static void grow_oak_leaf(struct oak *oak, const struct twig *twig)
 static enum status build(struct arena *arena, const void *options, struct mesh **mesh,
                          struct error *error)
 {
+    const struct options *given = options;
+    double slender = (double)given->width / (double)given->height;
+    if (slender < 0.5 || slender > 3)
+        return error_set(
+            error, STATUS_INVALID, "width: %g is outside %g..%g, half to three times the height",
+            (double)given->width, 0.5 * (double)given->height, 3 * (double)given->height);
     struct arena *scratch = arena_create(0);
     struct oak *oak = ARENA_NEW(scratch, struct oak);
-    oak->options = options;
+    oak->options = given;
     oak->random = random_seed((uint64_t)oak->options->seed, 0x6f616b);
     oak->scale = (double)oak->options->height / 30 + (double)oak->options->width / 32;
     oak->nodes = ARENA_ARRAY(scratch, struct node, NODES_MAX + 1);

@@ -76,18 +76,19 @@ static void bear(struct poplar *p, struct vec from, struct vec to)
 static void grow_trunk(struct poplar *p)
 {
     double height = (double)p->options->height, lean = 0, lean_z = 0;
-    double foot = 0.0165 * height;
+    double foot = 0.0145 * height;
     for (int i = 0; i < TRUNK_POINTS; i++) {
         double s = (double)i / (TRUNK_POINTS - 1);
         double t = s * (0.35 + 0.65 * s); /* rings stand closer near the foot */
         struct stem_point *point = &p->trunk[i];
         double flare = t < 0.05 ? (1 - t / 0.05) * (1 - t / 0.05) : 0;
         point->position_m = (struct vec){lean, t * height, lean_z};
-        point->radius_m = foot * ((1 - t) * (0.85 + 0.15 * (1 - t)) + 0.012 + 0.55 * flare);
+        point->radius_m = foot * ((1 - t) * (0.85 + 0.15 * (1 - t)) + 0.012 + 0.4 * flare);
         point->flute = 0.05 + 0.16 * flare;
         point->sides = t < 0.55 ? 16 : t < 0.9 ? 8 : 4;
-        lean += random_between(&p->random, -1, 1) * 0.0016 * height;
-        lean_z += random_between(&p->random, -1, 1) * 0.0016 * height;
+        double sway = i > 0 ? 0.0016 * height : 0; /* the foot's ring lies level */
+        lean += random_between(&p->random, -1, 1) * sway;
+        lean_z += random_between(&p->random, -1, 1) * sway;
     }
     grow_tube(&p->grow, p->trunk, TRUNK_POINTS);
     for (int i = TRUNK_POINTS - 7; i + 1 < TRUNK_POINTS; i++)
@@ -134,7 +135,9 @@ static void grow_twig(struct poplar *p, struct vec foot, struct vec along, doubl
 static void grow_branch(struct poplar *p, int k)
 {
     struct stem_point points[BRANCH_POINTS];
-    double height = (double)p->options->height, half = (double)p->options->width / 2;
+    double height = (double)p->options->height;
+    double half = (double)p->options->width / 2, twigs_reach = 0.017 * height;
+    half = half > 1.5 * twigs_reach ? half - twigs_reach : half / 3;
     double u = (k + random_double(&p->random)) / BRANCHES;
     double t = 0.055 + 0.88 * u * (0.82 + 0.18 * u);
     struct stem_point root = on_trunk(p, t);

@@ -1,6 +1,8 @@
 /* Mesh files through assimp's C interface: the only file that knows assimp. */
 #include "wall/mesh_import.h"
 
+#include "base/color.h"
+
 #include <assimp/GltfMaterial.h>
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -20,12 +22,6 @@ struct import {
     bool colors_encoded;   /* vertex colours are sRGB */
     struct error *error;
 };
-
-/* IEC 61966-2-1. */
-static float srgb_decode(float c)
-{
-    return c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f);
-}
 
 /* NaN becomes 0. */
 static float clamp01(float x)
