@@ -70,9 +70,12 @@ static void test_json__errors_name_file_place_value_and_allowance(void **unused)
         {"{\"height_m\":900}", "f.json: height_m: value is 900; allowed: 0.1..200"},
         {"{\"height_m\":\"x\"}", "f.json: height_m: is a text; allowed: a number"},
         {"{\"trees\":1.5}", "f.json: trees: value is 1.5; allowed: whole numbers 0..1000"},
-        {"{\"hieght_m\":1}", "f.json: hieght_m: is not a key known here"},
+        {"{\"hieght_m\":1}",
+         "f.json: hieght_m: is not a key known here (did you mean 'height_m'?); allowed: height_m, "
+         "trees, fog, doc, kind, eye, sun, keys, list"},
         {"{\"sun\":{\"elevaton\":1,\"elevation\":1}}",
-         "f.json: sun.elevaton: is not a key known here"},
+         "f.json: sun.elevaton: is not a key known here (did you mean 'elevation'?); allowed: "
+         "elevation"},
         {"{\"sun\":{}}", "f.json: sun.elevation: is missing; a number is required"},
         {"{\"keys\":[{\"t\":1},{\"t\":12}]}", "f.json: keys[1].t: value is 12; allowed: 0..9"},
         {"{\"keys\":[3]}", "f.json: keys[0]: is a number; allowed: an object"},

@@ -19,6 +19,12 @@ enum json_type { JSON_NULL, JSON_BOOL, JSON_NUMBER, JSON_TEXT, JSON_ARRAY, JSON_
 static const char *const type_words[] = {"null",   "true or false", "a number",
                                          "a text", "a list",        "an object"};
 
+/* The keys that a reader asked an object for: what is allowed there. */
+struct asked {
+    const struct asked *before;
+    char key[];
+};
+
 struct json {
     struct json_doc *doc;
     const struct json *parent;
@@ -30,6 +36,7 @@ struct json {
     const char *text;
     size_t children_count;
     struct json *children;
+    const struct asked *asked_keys; /* the last one first */
 };
 
 struct json_doc {
@@ -160,12 +167,43 @@ struct json *json_root(struct json_doc *doc)
     return &doc->root;
 }
 
+static bool asked_before(const struct asked *asked, const char *key)
+{
+    for (; asked; asked = asked->before)
+        if (strcmp(asked->key, key) == 0)
+            return true;
+    return false;
+}
+
+/* "is not a key known here (did you mean 'size'?); allowed: doc, size, trees" */
+static void fail_unknown(const struct json *child)
+{
+    char allowed[400] = "";
+    const char *nearest = NULL;
+    size_t used = sizeof allowed - 1; /* filled from its end, since the last asked key is first */
+    for (const struct asked *at = child->parent->asked_keys; at; at = at->before) {
+        size_t length = strlen(at->key) + (nearest ? 2 : 0);
+        if (asked_before(at->before, at->key) || length > used)
+            continue;
+        used -= length;
+        memcpy(allowed + used, at->key, strlen(at->key));
+        if (nearest)
+            memcpy(allowed + used + strlen(at->key), ", ", 2);
+        nearest = nearest_of(child->key, nearest, at->key);
+    }
+    char text[512];
+    snprintf(text, sizeof text, "is not a key known here%s%s%s; allowed: %s",
+             nearest ? " (did you mean '" : "", nearest ? nearest : "", nearest ? "'?)" : "",
+             nearest ? allowed + used : "no keys");
+    fail(child->doc, child, NULL, text);
+}
+
 static void check_asked(const struct json *node)
 {
     for (size_t i = 0; i < node->children_count; i++) {
         const struct json *child = &node->children[i];
         if (node->type == JSON_OBJECT && !child->asked && !node->free_keys)
-            fail(node->doc, child, NULL, "is not a key known here");
+            fail_unknown(child);
         check_asked(child);
     }
 }
@@ -183,6 +221,10 @@ static struct json *child_get(struct json *object, const char *key)
 {
     if (!object || object->doc->status != STATUS_OK || object->type != JSON_OBJECT)
         return NULL;
+    struct asked *asked = arena_alloc(object->doc->arena, 1, sizeof *asked + strlen(key) + 1);
+    memcpy(asked->key, key, strlen(key));
+    asked->before = object->asked_keys;
+    object->asked_keys = asked;
     for (size_t i = 0; i < object->children_count; i++)
         if (strcmp(object->children[i].key, key) == 0) {
             object->children[i].asked = true;

@@ -29,8 +29,8 @@ struct json_doc *json_load(struct arena *arena, const char *path, struct error *
 struct json_doc *json_parse(struct arena *arena, const char *text, const char *where,
                             struct error *error);
 struct json *json_root(struct json_doc *doc); /* an object; anything else is an error */
-/* Checks that every key was asked for; frees cJSON's memory. Returns the document's status. Texts
- * stay valid. */
+/* Checks that every key was asked for, and says for one that was not which ones were; frees cJSON's
+ * memory. Returns the document's status. Texts stay valid. */
 enum status json_end(struct json_doc *doc);
 
 bool json_has(struct json *object, const char *key);
