@@ -189,16 +189,17 @@ static void test_terrain__an_image_of_16_bits_gives_its_heights_to_the_last_bit(
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    const char *path = path_of(arena, "heights.pgm");
-    /* 3 x 2, binary, 16 bits, most significant byte first. */
+    const char *path = path_of(arena, "heights.png");
     static const unsigned values[6] = {0, 1, 256, 32768, 65534, 65535};
-    char bytes[32] = "P5 3 2 65535\n";
-    size_t size = strlen(bytes);
-    for (int k = 0; k < 6; k++) {
-        bytes[size++] = (char)(values[k] >> 8);
-        bytes[size++] = (char)(values[k] & 255);
-    }
-    assert_int_equal(file_write(path, bytes, size, NULL), STATUS_OK);
+    /* 3 x 2, grey, 16 bits; packed by Python's zlib. */
+    static const unsigned char bytes[] = {
+        0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
+        0x44, 0x52, 0x00, 0x00, 0x00, 0x03, 0x00, 0x00, 0x00, 0x02, 0x10, 0x00, 0x00, 0x00,
+        0x00, 0xe8, 0x8f, 0xe5, 0x85, 0x00, 0x00, 0x00, 0x16, 0x49, 0x44, 0x41, 0x54, 0x78,
+        0xda, 0x63, 0x60, 0x60, 0x60, 0x60, 0x64, 0x64, 0x60, 0x68, 0x60, 0xf8, 0xff, 0xef,
+        0xff, 0x7f, 0x00, 0x0d, 0x14, 0x04, 0x7e, 0x0d, 0x9c, 0x3e, 0x24, 0x00, 0x00, 0x00,
+        0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+    assert_int_equal(file_write(path, bytes, sizeof bytes, NULL), STATUS_OK);
     struct description description = description_of(path);
     for (int round = 0; round < 2; round++) { /* decoded, then from the cache */
         struct terrain terrain;
