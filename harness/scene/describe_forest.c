@@ -134,7 +134,7 @@ void describe_ground(struct arena *arena, struct json *root, struct description 
     struct json *terrain = json_object(root, "terrain");
     if (!terrain)
         return;
-    float size_m[2] = {0, 0}, albedo[3] = {0.12f, 0.14f, 0.06f};
+    float size_m[2] = {0, 0}, albedo[3] = {0.06f, 0.08f, 0.032f};
     ground->given = true;
     if (!json_vector(terrain, "size_m", size_m, 2, 1, 1e6))
         json_fail(terrain, "size_m", "is missing; allowed: [x, z] in 1..1e6");

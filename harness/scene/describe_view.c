@@ -25,13 +25,13 @@ void describe_light(struct json *root, struct description *description)
     sun->elevation_rad = (float)(elevation_deg * DEGREE);
     sun->end_azimuth_rad = (float)(end_azimuth_deg * DEGREE);
     sun->end_elevation_rad = (float)(end_elevation_deg * DEGREE);
-    describe_color(light, "radiance", sun->radiance, 2.4f, 2.3f, 2.0f);
-    describe_color(root, "ambient", description->ambient, 0.45f, 0.55f, 0.7f);
+    describe_color(light, "radiance", sun->radiance, 3.2f, 3.05f, 2.7f);
+    describe_color(root, "ambient", description->ambient, 0.55f, 0.68f, 0.9f);
 
     struct json *sky = json_object(root, "sky");
     describe_color(sky, "zenith", description->sky.zenith, 0.16f, 0.32f, 0.7f);
     describe_color(sky, "horizon", description->sky.horizon, 0.62f, 0.74f, 0.88f);
-    describe_color(sky, "ground", description->sky.ground, 0.3f, 0.32f, 0.2f);
+    describe_color(sky, "ground", description->sky.ground, 0.17f, 0.23f, 0.09f);
 
     struct json *fog = json_object(root, "fog");
     const float *horizon = description->sky.horizon;

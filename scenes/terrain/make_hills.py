@@ -46,11 +46,11 @@ def noise(x, y, octave):
 def height(x, y):
     """x, y in 0..1."""
     total = 0.55 + noise(4.3 * x, 4.3 * y, 0)
-    frequency, amplitude = 8.9, 0.45
+    frequency, amplitude = 8.9, 0.6
     for octave in range(1, 7):
         total += amplitude * max(total, 0.0) * noise(frequency * x, frequency * y, octave)
         frequency *= 2.03
-        amplitude *= 0.5
+        amplitude *= 0.58
     return total
 
 
