@@ -103,6 +103,15 @@ static double decibels(double mean_square)
     return fmin(-10 * log10(fmax(mean_square, 1e-300)), PSNR_MAX_DB);
 }
 
+/* Variance of an encoded value, to first order. */
+static double encoded_variance(const struct frame *frame, size_t i, float encoded)
+{
+    if (!frame->variance)
+        return 0;
+    double slope = srgb_slope((double)frame->rgba[i], (double)encoded);
+    return slope * slope * (double)frame->variance[i];
+}
+
 static void set_psnr(const struct pictures *all, const struct frame *test,
                      const struct frame *reference, struct comparison *out)
 {
@@ -113,10 +122,8 @@ static void set_psnr(const struct pictures *all, const struct frame *test,
         for (size_t i = 0; i < count; i++) {
             double difference = (double)a[i] - (double)b[i];
             squared += difference * difference;
-            if (all->has_noise) {
-                double slope = srgb_slope((double)reference->rgba[4 * i + c], (double)b[i]);
-                variance += slope * slope * compare_variance(test, reference, 4 * i + c);
-            }
+            variance += encoded_variance(test, 4 * i + c, a[i]) +
+                        encoded_variance(reference, 4 * i + c, b[i]);
         }
     }
     double values = 3 * (double)count;

@@ -4,7 +4,7 @@
  * for Alternating Images, HPG 2020, doi:10.1145/3406183. Andersson, Nilsson, Shirley,
  * Akenine-Moller: Visualizing Errors in Rendered High Dynamic Range Images, Eurographics 2021,
  * doi:10.2312/egs.20211015. Conventions of the authors' version 1.6: 67 pixels a degree, borders
- * replicated, D65 white, gaze constants q_c .7, p_c .4, p_t .95, w .082 degrees, q_f .5. */
+ * replicated, D65 white, constants q_c .7, p_c .4, p_t .95, w .082 degrees, q_f .5. */
 #ifndef TREELINE_TRUTH_FLIP_H
 #define TREELINE_TRUTH_FLIP_H
 

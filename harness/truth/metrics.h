@@ -5,33 +5,34 @@
 #include "base/color.h"
 #include "truth/frame.h"
 
-/* All pictures are linear RGB with the background in it. N pixels; a the test, b the reference;
- * sums over R, G, B unless said otherwise. "linear" metrics take the values as they are, of any
- * range; "display" metrics take sRGB-encoded values clamped to [0, 1] (FLIP: clamped, then in its
- * own space). V is the known variance of a - b in a value: that of both pictures added, 0 where a
- * picture has none.
+/* a: the test, b: the reference, both linear RGB with the background in it, N pixels; means and
+ * sums are over R, G, B and pixels. "linear" metrics take values of any range as they are,
+ * "display" metrics sRGB-encoded values clamped to [0, 1], a' and b' (FLIP: clamped, then in its
+ * own space). V is the known variance of a - b at a value: that of both pictures, 0 where a picture
+ * has none. raw is the formula; value takes the noise out where that is known, else it is raw;
+ * floor is what two perfect pictures with this noise would give.
  *
- * rmse           sqrt(mean (a - b)^2).                              value: sqrt(max(0, raw^2 - mean
- * V)) mae            mean |a - b|.                                      floor: mean sqrt(2 V / pi)
- * (Gaussian noise) relmse         mean (a - b)^2 / (b^2 + .01).                      value: raw -
- * mean V / (b^2 + .01), >= 0 psnr           -10 log10(mean (a' - b')^2), a', b' encoded; 100 dB at
- * most (identical pictures). value: mean V' subtracted, V' = V times the squared slope of the curve
- * at b (first order; 0 where b is clipped) ssim           mean structural similarity of luma .2126
- * R' + .7152 G' + .0722 B': truth/ssim.h flip, hdr-flip mean of the map: truth/flip.h coverage mean
- * |A_a - A_b|.                                  floor: mean sqrt(2 V / pi) coverage-bias  mean A_a
- * - A_b, > 0: the test covers more.         floor: its standard deviation, sqrt(sum V) / N
- * mean-color     length of mean a - mean b.                         value: sqrt(max(0, raw^2 - sum
- * V / N^2)) rmse-2, 4, 8   rmse of the means over boxes of 2 x 2, 4 x 4, 8 x 8 pixels from the top
- * left corner; a box that the border cuts is the mean of what it has, and counts by its pixels.
- * Noise as for rmse
+ * - rmse: sqrt(mean (a-b)^2). value: sqrt(max(0, raw^2 - mean V)); floor: sqrt(mean V).
+ * - mae: mean |a-b|. floor: mean sqrt(2 V / pi), as of Gaussian noise.
+ * - relmse: mean (a-b)^2 / (b^2 + .01). floor: mean V / (b^2 + .01); value: max(0, raw - floor).
+ * - psnr: -10 log10(mean (a'-b')^2), 100 at most (identical pictures). V' is each picture's
+ * variance times its squared slope of the sRGB curve, to first order, 0 where it is clipped. value:
+ * mean V' subtracted; floor: -10 log10(mean V').
+ * - ssim: mean structural similarity of luma .2126 R' + .7152 G' + .0722 B'; see truth/ssim.h.
+ * - flip, hdr-flip: the mean of the map; see truth/flip.h.
+ * - coverage: mean |A_a - A_b| over pixels. floor: mean sqrt(2 V / pi).
+ * - coverage-bias: mean A_a - A_b; above 0 the test covers more. floor: sqrt(sum V) / N, its
+ *   standard deviation (its expectation is 0).
+ * - mean-color: length of the RGB vector mean a - mean b. floor: sqrt(sum V) / N; value:
+ *   sqrt(max(0, raw^2 - floor^2)).
+ * - rmse-2, -4, -8: rmse of the means over boxes of 2 x 2, 4 x 4, 8 x 8 pixels, from the top left
+ *   corner; a box that the border cuts is the mean of what it has and counts by its pixels. Noise
+ * as for rmse, with the variance of the boxes' means.
  *
- * floor of rmse, mean-color, rmse-N: the root of the mean square that is subtracted; of relmse and
- * psnr: that mean itself (in dB). ssim, flip, hdr-flip have no closed form: value is raw, and floor
- * compares the reference with itself after a seeded normal deviate, the same for R, G and B of a
- * pixel (noise of a ray tracer is mostly of brightness) and scaled by sqrt V, is added. Noise of
- * different pixels is taken as independent.
- *
- * X(field, word, better, domain, doc): the order of `treeline diff` and of the results columns.
+ * ssim, flip and hdr-flip know no correction; their floor compares the reference with itself plus a
+ * seeded normal deviate a pixel, the same for R, G and B (a ray tracer's noise is mostly one of
+ * brightness), times sqrt(V). Noise of different pixels is taken as independent. */
+/* X(field, word, better, domain, doc): the order of `treeline diff` and of the results columns.
  * better: -1 lower, +1 higher, 0 nearer to zero. domain: "linear" or "display". */
 #define METRIC_LIST(X)                                                                             \
     X(rmse, "rmse", -1, "linear", "root mean square error over RGB")                               \
@@ -61,9 +62,7 @@ struct metric_info {
 };
 extern const struct metric_info metric_table[]; /* ends with a NULL field */
 
-/* raw: as measured. value: corrected for the noise of both pictures where a correction is known
- * (above), else raw. floor: what two perfect pictures with this noise would give; of exact pictures
- * 0 (psnr 100, ssim 1). */
+/* All metrics of a pair; of exact pictures value is raw and floor is 0 (psnr 100, ssim 1). */
 struct comparison {
     struct metrics value, raw, floor;
 };
