@@ -1,14 +1,12 @@
 /* treeline diff: two pictures compared by every metric. */
+#include "cli/cli.h"
 #include "truth/frame_image.h"
 #include "truth/metrics.h"
 #include "wall/json.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-int verb_diff(int argc, char **argv);
 
 enum { KEY_JSON = 0x200, KEY_MAP };
 
@@ -104,7 +102,7 @@ static enum status diff(struct arena *arena, const struct request *request, stru
 
 static const char *better_word(int better)
 {
-    return better < 0 ? "lower" : better > 0 ? "higher" : "nearer 0";
+    return better < 0 ? "lower" : better > 0 ? "higher" : "zero";
 }
 
 static const char *unit_of(const struct metric_info *info)
@@ -122,14 +120,14 @@ static void print_number(double value)
 
 static void print_table(const struct outcome *outcome)
 {
-    printf("%-14s %12s %12s %12s  %-4s %-8s %-9s %s\n", "metric", "value", "raw", "floor", "unit",
+    printf("%-14s %12s %12s %12s  %-4s %-8s %-7s %s\n", "metric", "value", "raw", "floor", "unit",
            "domain", "better", "meaning");
     for (const struct metric_info *info = metric_table; info->field; info++) {
         printf("%-14s", info->word);
         print_number(metric_of(&outcome->comparison.value, info));
         print_number(metric_of(&outcome->comparison.raw, info));
         print_number(metric_of(&outcome->comparison.floor, info));
-        printf("  %-4s %-8s %-9s %s\n", unit_of(info), info->domain, better_word(info->better),
+        printf("  %-4s %-8s %-7s %s\n", unit_of(info), info->domain, better_word(info->better),
                info->doc);
     }
 }
@@ -180,12 +178,10 @@ int verb_diff(int argc, char **argv)
     struct error error = {0};
     struct outcome outcome;
     enum status status = diff(arena, &request, &outcome, &error);
-    if (status)
-        fprintf(stderr, "treeline: %s\n", error.text);
-    else if (request.json)
+    if (status == STATUS_OK && request.json)
         print_json(arena, &request, &outcome);
-    else
+    else if (status == STATUS_OK)
         print_table(&outcome);
     arena_destroy(arena);
-    return (int)status;
+    return status ? cli_fail(&error) : STATUS_OK;
 }
