@@ -1,0 +1,23 @@
+/* 1, 4 or 16 samples a pixel, for a method that draws triangles. */
+#ifndef TREELINE_BAKE_SAMPLING_H
+#define TREELINE_BAKE_SAMPLING_H
+
+#include "method/method.h"
+
+struct sampling;
+
+/* samples: 1 draws into the target itself; 4 into a multisampled twin; 16 too where the driver has
+ * so many, else into 4 samples of each of 2 x 2 texels. The twin is made by the first frame, which
+ * knows its size. Varyings want `centroid`: at a pixel's centre outside a small triangle they run
+ * wild. */
+enum status sampling_prepare(struct workspace *workspace, int samples, struct sampling **sampling);
+
+/* Binds what is to be drawn into; drawn is view with its size. */
+enum status sampling_begin(struct workspace *workspace, struct sampling *sampling,
+                           const struct target *target, const struct view *view,
+                           struct view *drawn);
+/* Averages what was drawn into target. */
+void sampling_end(struct workspace *workspace, const struct sampling *sampling,
+                  const struct target *target);
+
+#endif
