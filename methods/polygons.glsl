@@ -1,0 +1,102 @@
+// Triangles of plants, instanced. Variants:
+// PRUNED: the elements of a far tree; they grow as they get fewer, and shrink away at the end of the run.
+// TEXTURED: alpha-tested. LEAF: leaf shading, else bark. LIT_AT_VERTICES: flat triangles, shaded before they are
+// rasterised.
+#pragma stage vertex
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, 0 bark
+layout(location = 2) in vec3 albedo;
+#ifdef TEXTURED
+layout(location = 3) in vec2 uv;
+sample out vec2 texture_uv;
+#endif
+layout(location = 5) in vec4 place;  // foot, m; first element of the run
+layout(location = 6) in vec4 turn;   // scale cos, scale sin; elements of the run, their growth
+#ifdef LIT_AT_VERTICES
+centroid out vec3 radiance;
+#else
+centroid out vec3 position_m;
+centroid out vec3 shading_normal;
+centroid out vec3 surface_albedo;
+#endif
+#ifdef PRUNED
+layout(location = 4) in vec3 center;
+uniform float elements;  // of the plant
+uniform float taper;     // share of the run that is shrinking
+uniform bool level_contrast;
+uniform vec3 mean_bark, mean_leaf;  // lit, over the plant
+#endif
+
+void main()
+{
+    vec3 local = position;
+#ifdef PRUNED
+    float rank = float(gl_VertexID / 3) - place.w;
+    rank += rank < 0.0 ? elements : 0.0;
+    float keep = taper > 0.0 ? clamp((turn.z - rank - 0.5) / (taper * turn.z), 0.0, 1.0) : 1.0;
+    local = center + (position - center) * (turn.w * keep);
+    bool leaf = normal.w > 0.5;
+#elif defined(LEAF)
+    const bool leaf = true;
+#else
+    const bool leaf = false;
+#endif
+    float scale = length(turn.xy);
+    vec2 way = turn.xy / scale;
+    vec3 world = place.xyz + scale * rotate_y(local, way.x, way.y);
+    vec3 n = rotate_y(normal.xyz, way.x, way.y);
+#ifdef LIT_AT_VERTICES
+    bool facing = dot(n, eye_m - world) >= 0.0;  // the same at every point of a flat triangle
+    vec3 lit = leaf ? shade_leaf(albedo, n, facing) : shade_bark(albedo, n, facing);
+#ifdef PRUNED
+    // One element stands for turn.w^2: the mean of so many varies turn.w times less (Cook et al. 2007, 3.3).
+    if (level_contrast)
+        lit = mix(leaf ? mean_leaf : mean_bark, lit, min(1.0, 1.0 / turn.w));
+#endif
+    radiance = shade_fog(lit, world);
+#else
+    position_m = world;
+    shading_normal = n;
+    surface_albedo = albedo;
+#endif
+#ifdef TEXTURED
+    texture_uv = uv;
+#endif
+    gl_Position = view_projection * vec4(world, 1.0);
+}
+
+#pragma stage fragment
+layout(location = 0) out vec4 color;
+#if defined(LIT_AT_VERTICES)
+centroid in vec3 radiance;
+
+void main()
+{
+    color = vec4(radiance, 1.0);
+}
+#else
+centroid in vec3 position_m;
+centroid in vec3 shading_normal;
+centroid in vec3 surface_albedo;
+#ifdef TEXTURED
+sample in vec2 texture_uv;  // each sample of a pixel tests its own texel
+layout(binding = 0) uniform sampler2D picture;
+#endif
+
+void main()
+{
+    vec3 a = surface_albedo;
+#ifdef TEXTURED
+    vec4 texel = texture(picture, texture_uv);
+    if (texel.a < 0.5)
+        discard;
+    a *= texel.rgb;
+#endif
+#ifdef LEAF
+    vec3 lit = shade_leaf(a, shading_normal, gl_FrontFacing);
+#else
+    vec3 lit = shade_bark(a, shading_normal, gl_FrontFacing);
+#endif
+    color = vec4(shade_fog(lit, position_m), 1.0);
+}
+#endif
