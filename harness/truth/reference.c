@@ -60,6 +60,30 @@ static enum status request_check(const struct view *view, const struct reference
     return limits_set(options, limits, error);
 }
 
+/* view_ray() as a plane of directions that are 1 along forward. */
+static void plane_direction(const struct view *view, float x_px, float y_px, float direction[3])
+{
+    view_ray(view, x_px, y_px, direction);
+    float depth = 0;
+    for (int i = 0; i < 3; i++)
+        depth += direction[i] * view->forward[i];
+    for (int i = 0; i < 3; i++)
+        direction[i] /= depth;
+}
+
+static void picture_aim(struct picture *picture)
+{
+    const struct view *view = picture->view;
+    float width = (float)view->width_px, height = (float)view->height_px, right[3], bottom[3];
+    plane_direction(view, 0, 0, picture->corner);
+    plane_direction(view, width, 0, right);
+    plane_direction(view, 0, height, bottom);
+    for (int i = 0; i < 3; i++) {
+        picture->step_x[i] = (right[i] - picture->corner[i]) / width;
+        picture->step_y[i] = (bottom[i] - picture->corner[i]) / height;
+    }
+}
+
 static void picture_set(const struct scene *scene, const struct view *view,
                         const struct reference_options *options, struct picture *picture)
 {
@@ -71,7 +95,10 @@ static void picture_set(const struct scene *scene, const struct view *view,
     for (int i = 0; i < 3; i++) {
         picture->sun[i] = scene->sun.radiance[i];
         picture->ambient[i] = options->effects & EFFECT_AMBIENT ? scene->ambient[i] : 0;
+        picture->sun_shines |= picture->sun[i] > 0;
+        picture->sky_shines |= picture->ambient[i] > 0;
     }
+    picture_aim(picture);
 }
 
 /* What a picture needs while it is made. */
@@ -98,6 +125,7 @@ static void render_allocate(struct arena *arena, struct render *render)
     render->samples.sums = arena_alloc(arena, render->pixels, sizeof *render->samples.sums);
     render->samples.counts = ARENA_ARRAY(arena, uint32_t, render->pixels);
     render->samples.wanted = ARENA_ARRAY(arena, uint32_t, render->pixels);
+    memset(render->samples.counts, 0, render->pixels * sizeof *render->samples.counts);
     render->levels = ARENA_ARRAY(arena, int16_t, render->pixels);
     render->variance = arena_alloc(arena, render->pixels, sizeof *render->variance);
     render->works = ARENA_ARRAY(arena, struct tile_work *, (size_t)render->threads);

@@ -20,8 +20,10 @@ struct surface {
     bool leaf;
     bool plant;  /* counts as coverage */
     bool flat;   /* the vertices' normals are the triangles' own */
-    bool varied; /* albedo from vertex colours or texture */
+    bool varied; /* the albedo changes within a triangle */
     float albedo[3];
+    float (*tints)[3]; /* albedo of each triangle of the part, with the vertices' colour; NULL:
+                          albedo */
     const struct texture *texture;
 };
 
@@ -56,6 +58,10 @@ struct picture {
     uint64_t seed;
     int width_px, height_px;
     float sun[3], ambient[3]; /* radiance of a white surface; 0 where the effect is off */
+    bool sun_shines, sky_shines;
+    /* Not unit direction through (x, y) px, 1 along the view's forward: corner + x step_x + y
+     * step_y. */
+    float corner[3], step_x[3], step_y[3];
 };
 
 struct ray_counts {
@@ -74,6 +80,7 @@ struct samples {
 
 struct tile_work; /* what one thread needs; lives in the arena */
 struct tile_work *tile_work_create(struct arena *arena);
+
 /* Takes the missing samples of the tile's pixels. tile: number, row by row. */
 void tile_trace(const struct picture *picture, struct tile_work *work, int tile,
                 struct samples *samples, struct ray_counts *counts);

@@ -74,7 +74,26 @@ static bool part_is_flat(const struct mesh *mesh, const struct mesh_part *part)
     return true;
 }
 
-static void surface_set(struct surface *surface, const struct mesh *mesh,
+/* One albedo a triangle where its three corners have one colour; NULL where a colour changes
+ * inside. */
+static float (*part_tints(struct arena *arena, const struct mesh *mesh,
+                          const struct mesh_part *part))[3]
+{
+    const float *albedo = mesh->materials[part->material].albedo;
+    for (uint32_t t = 0; t < part->triangles_count; t++) {
+        const uint32_t *corner = mesh->triangles[part->first_triangle + t];
+        for (int k = 1; k < 3; k++)
+            if (memcmp(mesh->colors[corner[k]], mesh->colors[corner[0]], sizeof *mesh->colors) != 0)
+                return NULL;
+    }
+    float(*tints)[3] = arena_alloc(arena, part->triangles_count, sizeof *tints);
+    for (uint32_t t = 0; t < part->triangles_count; t++)
+        for (int i = 0; i < 3; i++)
+            tints[t][i] = albedo[i] * mesh->colors[mesh->triangles[part->first_triangle + t][0]][i];
+    return tints;
+}
+
+static void surface_set(struct arena *arena, struct surface *surface, const struct mesh *mesh,
                         const struct mesh_part *part, bool plant)
 {
     const struct material *material = &mesh->materials[part->material];
@@ -84,9 +103,10 @@ static void surface_set(struct surface *surface, const struct mesh *mesh,
         .leaf = material->kind == MATERIAL_LEAF,
         .plant = plant,
         .flat = part_is_flat(mesh, part),
-        .varied = mesh->colors || (material->texture && mesh->uvs),
+        .tints = mesh->colors ? part_tints(arena, mesh, part) : NULL,
         .texture = mesh->uvs ? material->texture : NULL,
     };
+    surface->varied = surface->texture || (mesh->colors && !surface->tints);
     memcpy(surface->albedo, material->albedo, sizeof surface->albedo);
 }
 
@@ -96,7 +116,7 @@ static enum status add_mesh(struct arena *arena, struct traced_scene *traced,
 {
     struct embree_part *parts = ARENA_ARRAY(arena, struct embree_part, mesh->parts_count);
     for (size_t i = 0; i < mesh->parts_count; i++) {
-        surface_set(&surfaces[i], mesh, &mesh->parts[i], plant);
+        surface_set(arena, &surfaces[i], mesh, &mesh->parts[i], plant);
         parts[i] = (struct embree_part){.first_triangle = mesh->parts[i].first_triangle,
                                         .triangles_count = mesh->parts[i].triangles_count};
         if (surfaces[i].texture && texture_has_holes(surfaces[i].texture)) {

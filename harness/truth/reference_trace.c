@@ -9,6 +9,7 @@
 #include "truth/reference_parts.h"
 #include "truth/sampler.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -66,112 +67,157 @@ static void queue_trace(const struct picture *picture, struct tile_work *work,
     queue->count = 0;
 }
 
-/* A point that is seen. Directions are unit; geometric and normal are on the eye's side. */
-struct sight {
-    const struct surface *surface;
-    float point[3], geometric[3], normal[3], albedo[3];
-    float distance_m, offset_m;
+/* What the lanes of a packet see. Directions are unit; geometric and normal are on the eye's side.
+ */
+struct sights {
+    const struct surface *surface[EMBREE_LANES]; /* NULL: the sky */
+    float turn_cos[EMBREE_LANES], turn_sin[EMBREE_LANES];
+    float point[3][EMBREE_LANES], geometric[3][EMBREE_LANES], normal[3][EMBREE_LANES];
+    float offset_m[EMBREE_LANES];   /* more than the error of point */
+    float sun_facing[EMBREE_LANES]; /* normal . sun */
 };
 
-/* Leaves the surface at a distance that exceeds the error of the hit point: a few units in the last
- * place of the largest number that went into it. */
-static void queue_push(struct ray_queue *queue, const struct sight *sight, const float direction[3],
-                       const float light[3], uint32_t slot)
+/* Leaves the surface at a distance that exceeds the error of the hit point. */
+static void queue_push(struct ray_queue *queue, const struct sights *sights, int lane,
+                       const float direction[3], const float light[3], uint32_t slot)
 {
-    float side = glm_vec3_dot((float *)sight->geometric, (float *)direction);
-    if (side <= 0 && !sight->surface->leaf)
+    float side = 0;
+    for (int axis = 0; axis < 3; axis++)
+        side += sights->geometric[axis][lane] * direction[axis];
+    if (side <= 0 && !sights->surface[lane]->leaf)
         return;
-    float offset = copysignf(sight->offset_m, side);
+    float offset = side > 0 ? sights->offset_m[lane] : -sights->offset_m[lane];
     int at = queue->count++;
     for (int axis = 0; axis < 3; axis++) {
-        queue->origin[axis][at] = sight->point[axis] + offset * sight->geometric[axis];
+        queue->origin[axis][at] =
+            sights->point[axis][lane] + offset * sights->geometric[axis][lane];
         queue->direction[axis][at] = direction[axis];
         queue->light[axis][at] = light[axis];
     }
     queue->slot[at] = slot;
 }
 
-/* Rotates from the plant's space into the world's and makes unit; false for a zero vector. */
-static bool turn_unit(const struct placement *placement, const float from[3], float to[3])
+/* What was hit; the loads of all lanes are under way before the first is used. */
+static void sights_gather(const struct traced_scene *traced, const struct embree_packet *packet,
+                          int lanes, struct sights *sights)
 {
-    float x = from[0] * placement->turn_cos + from[2] * placement->turn_sin;
-    float z = from[2] * placement->turn_cos - from[0] * placement->turn_sin;
-    float length = sqrtf(x * x + from[1] * from[1] + z * z);
-    if (!(length > 0))
-        return false;
-    to[0] = x / length;
-    to[1] = from[1] / length;
-    to[2] = z / length;
-    return true;
+    for (int lane = 0; lane < lanes; lane++)
+        if (packet->geometry[lane] != EMBREE_NONE)
+            __builtin_prefetch(&traced->placements[packet->instance[lane]]);
+    for (int lane = 0; lane < EMBREE_LANES; lane++) {
+        sights->surface[lane] = NULL;
+        sights->turn_cos[lane] = 1;
+        sights->turn_sin[lane] = 0;
+        if (lane >= lanes || packet->geometry[lane] == EMBREE_NONE)
+            continue;
+        const struct placement *placement = &traced->placements[packet->instance[lane]];
+        const struct surface *surface =
+            &traced->surfaces[placement->first_surface + packet->geometry[lane]];
+        sights->surface[lane] = surface;
+        sights->turn_cos[lane] = placement->turn_cos;
+        sights->turn_sin[lane] = placement->turn_sin;
+        if (surface->tints)
+            __builtin_prefetch(surface->tints[packet->primitive[lane]]);
+        if (!surface->flat)
+            __builtin_prefetch(
+                surface->mesh->triangles[surface->first_triangle + packet->primitive[lane]]);
+    }
 }
 
-static void smooth_normal(const struct sight *sight, const struct placement *placement,
-                          uint32_t triangle, float u, float v, float normal[3])
+/* Turns from the plant's space into the world's and makes unit, all lanes; a zero vector becomes
+ * minus toward. */
+static void turn_lanes(const struct sights *sights, const float from[3][EMBREE_LANES],
+                       const float toward[3][EMBREE_LANES], float to[3][EMBREE_LANES])
 {
-    const struct mesh *mesh = sight->surface->mesh;
-    const uint32_t *corner = mesh->triangles[triangle];
-    float mixed[3];
-    for (int axis = 0; axis < 3; axis++)
-        mixed[axis] = (1 - u - v) * mesh->normals[corner[0]][axis] +
-                      u * mesh->normals[corner[1]][axis] + v * mesh->normals[corner[2]][axis];
-    if (!turn_unit(placement, mixed, normal))
-        memcpy(normal, sight->geometric, 3 * sizeof *normal);
+    for (int i = 0; i < EMBREE_LANES; i++) {
+        float x = from[0][i] * sights->turn_cos[i] + from[2][i] * sights->turn_sin[i];
+        float y = from[1][i];
+        float z = from[2][i] * sights->turn_cos[i] - from[0][i] * sights->turn_sin[i];
+        float square = x * x + y * y + z * z, inverse = 1 / sqrtf(square);
+        bool known = square > 0 && inverse < FLT_MAX;
+        to[0][i] = known ? x * inverse : -toward[0][i];
+        to[1][i] = known ? y * inverse : -toward[1][i];
+        to[2][i] = known ? z * inverse : -toward[2][i];
+    }
 }
 
-static void varied_albedo(const struct surface *surface, uint32_t triangle, float u, float v,
-                          float albedo[3])
+/* Vertex normals, mixed and turned, in the lanes that need them. */
+static void smooth_normals(const struct embree_packet *packet, struct sights *sights)
 {
+    float mixed[3][EMBREE_LANES], turned[3][EMBREE_LANES];
+    bool any = false;
+    memcpy(mixed, packet->normal, sizeof mixed);
+    for (int lane = 0; lane < EMBREE_LANES; lane++) {
+        const struct surface *surface = sights->surface[lane];
+        if (!surface || surface->flat)
+            continue;
+        const struct mesh *mesh = surface->mesh;
+        const uint32_t *corner = mesh->triangles[surface->first_triangle + packet->primitive[lane]];
+        float u = packet->u[lane], v = packet->v[lane];
+        any = true;
+        for (int axis = 0; axis < 3; axis++)
+            mixed[axis][lane] = (1 - u - v) * mesh->normals[corner[0]][axis] +
+                                u * mesh->normals[corner[1]][axis] +
+                                v * mesh->normals[corner[2]][axis];
+    }
+    if (!any) {
+        memcpy(sights->normal, sights->geometric, sizeof sights->normal);
+        return;
+    }
+    turn_lanes(sights, (const float(*)[EMBREE_LANES])mixed, packet->direction, turned);
+    memcpy(sights->normal, turned, sizeof sights->normal);
+}
+
+static void sights_find(const struct picture *picture, const struct embree_packet *packet,
+                        int lanes, struct sights *sights)
+{
+    const float *sun = picture->view->sun_direction;
+    sights_gather(&picture->traced, packet, lanes, sights);
+    turn_lanes(sights, packet->normal, packet->direction, sights->geometric);
+    smooth_normals(packet, sights);
+    for (int i = 0; i < EMBREE_LANES; i++) {
+        float toward = 0, largest = packet->far[i], facing = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            float at = packet->origin[axis][i] + packet->far[i] * packet->direction[axis][i];
+            float size = fabsf(at);
+            sights->point[axis][i] = at;
+            largest = size > largest ? size : largest;
+            toward += packet->direction[axis][i] * sights->geometric[axis][i];
+            facing += sights->normal[axis][i] * sun[axis];
+        }
+        /* A few units in the last place of the largest number that went into the point. */
+        sights->offset_m[i] = 1e-6f + 0x1p-19f * largest;
+        float turn = toward > 0 ? -1.0f : 1.0f;
+        sights->sun_facing[i] = turn * facing;
+        for (int axis = 0; axis < 3; axis++) {
+            sights->geometric[axis][i] *= turn;
+            sights->normal[axis][i] *= turn;
+        }
+    }
+}
+
+static void surface_albedo(const struct surface *surface, const struct embree_packet *packet,
+                           int lane, float albedo[3])
+{
+    uint32_t primitive = packet->primitive[lane];
+    float u = packet->u[lane], v = packet->v[lane];
     const struct mesh *mesh = surface->mesh;
-    if (mesh->colors) {
-        const uint32_t *corner = mesh->triangles[triangle];
+    memcpy(albedo, surface->tints ? surface->tints[primitive] : surface->albedo,
+           3 * sizeof *albedo);
+    if (!surface->varied)
+        return;
+    const uint32_t *corner = mesh->triangles[surface->first_triangle + primitive];
+    if (mesh->colors && !surface->tints)
         for (int i = 0; i < 3; i++)
             albedo[i] *= (1 - u - v) * mesh->colors[corner[0]][i] + u * mesh->colors[corner[1]][i] +
                          v * mesh->colors[corner[2]][i];
-    }
     if (surface->texture) {
         float uv[2], rgba[4];
-        mesh_uv(mesh, triangle, u, v, uv);
+        mesh_uv(mesh, surface->first_triangle + primitive, u, v, uv);
         texture_sample(surface->texture, uv, rgba);
         for (int i = 0; i < 3; i++)
             albedo[i] *= rgba[i];
     }
-}
-
-/* What the lane sees; the packet has hit something there. */
-static void sight_find(const struct picture *picture, const struct embree_packet *packet, int lane,
-                       struct sight *sight)
-{
-    const struct placement *placement = &picture->traced.placements[packet->instance[lane]];
-    const struct surface *surface =
-        &picture->traced.surfaces[placement->first_surface + packet->geometry[lane]];
-    uint32_t triangle = surface->first_triangle + packet->primitive[lane];
-    float u = packet->u[lane], v = packet->v[lane];
-    float across[3] = {packet->normal[0][lane], packet->normal[1][lane], packet->normal[2][lane]};
-    sight->surface = surface;
-    sight->distance_m = packet->far[lane];
-    float largest = sight->distance_m, toward = 0;
-    if (!turn_unit(placement, across, sight->geometric)) /* a triangle without area */
-        for (int axis = 0; axis < 3; axis++)
-            sight->geometric[axis] = -packet->direction[axis][lane];
-    for (int axis = 0; axis < 3; axis++) {
-        float direction = packet->direction[axis][lane];
-        sight->point[axis] = packet->origin[axis][lane] + sight->distance_m * direction;
-        largest = fmaxf(largest, fabsf(sight->point[axis]));
-        toward += direction * sight->geometric[axis];
-    }
-    sight->offset_m = 1e-6f + 0x1p-19f * largest;
-    if (surface->flat)
-        memcpy(sight->normal, sight->geometric, sizeof sight->normal);
-    else
-        smooth_normal(sight, placement, triangle, u, v, sight->normal);
-    if (toward > 0)
-        for (int axis = 0; axis < 3; axis++) {
-            sight->geometric[axis] = -sight->geometric[axis];
-            sight->normal[axis] = -sight->normal[axis];
-        }
-    memcpy(sight->albedo, surface->albedo, sizeof sight->albedo);
-    if (surface->varied)
-        varied_albedo(surface, triangle, u, v, sight->albedo);
 }
 
 /* Cosine-weighted direction around the unit normal. Frame: Duff et al. 2017, JCGT 6(1). */
@@ -187,13 +233,12 @@ static void sky_direction(const float normal[3], const float point[2], float dir
         direction[axis] = x * first[axis] + y * second[axis] + z * normal[axis];
 }
 
+/* white: what a white surface there would add to the picture under light 1. */
 static void light_sun(const struct picture *picture, struct tile_work *work,
-                      const struct sight *sight, const float white[3], uint32_t slot)
+                      const struct sights *sights, int lane, const float white[3])
 {
-    const float *sun = picture->view->sun_direction;
-    float facing =
-        sight->normal[0] * sun[0] + sight->normal[1] * sun[1] + sight->normal[2] * sun[2];
-    if (sight->surface->leaf && picture->effects & EFFECT_TWO_SIDED)
+    float facing = sights->sun_facing[lane];
+    if (picture->effects & EFFECT_TWO_SIDED && sights->surface[lane]->leaf)
         facing = fabsf(facing);
     if (!(facing > 0))
         return;
@@ -201,72 +246,96 @@ static void light_sun(const struct picture *picture, struct tile_work *work,
     for (int i = 0; i < 3; i++)
         light[i] = white[i] * picture->sun[i] * facing;
     if (picture->effects & EFFECT_SUN_SHADOWS)
-        queue_push(&work->sun, sight, sun, light, slot);
+        queue_push(&work->sun, sights, lane, picture->view->sun_direction, light, work->slot[lane]);
     else
         for (int i = 0; i < 3; i++)
-            work->sums[slot][i] += light[i];
+            work->sums[work->slot[lane]][i] += light[i];
 }
 
 static void light_sky(const struct picture *picture, struct tile_work *work,
-                      const struct sight *sight, const float white[3], int lane)
+                      const struct sights *sights, int lane, const float white[3])
 {
-    uint32_t slot = work->slot[lane];
     float light[3];
     for (int i = 0; i < 3; i++)
         light[i] = white[i] * picture->ambient[i];
     if (picture->effects & EFFECT_SKY_OCCLUSION) {
         struct sampler sampler =
             sampler_create(picture->seed, work->pixel[lane], work->replicate[lane], SAMPLER_SKY);
+        float normal[3] = {sights->normal[0][lane], sights->normal[1][lane],
+                           sights->normal[2][lane]};
         float point[2], direction[3];
         sampler_point(&sampler, work->index[lane], point);
-        sky_direction(sight->normal, point, direction);
-        queue_push(&work->sky, sight, direction, light, slot);
+        sky_direction(normal, point, direction);
+        queue_push(&work->sky, sights, lane, direction, light, work->slot[lane]);
     } else {
         for (int i = 0; i < 3; i++)
-            work->sums[slot][i] += light[i];
+            work->sums[work->slot[lane]][i] += light[i];
     }
 }
 
-static void shade_lane(const struct picture *picture, struct tile_work *work, int lane)
+static void shade_sky(const struct picture *picture, struct tile_work *work, int lane)
 {
-    const struct scene *scene = picture->traced.scene;
     const struct embree_packet *packet = &work->packet;
-    float *sum = work->sums[work->slot[lane]];
-    if (packet->geometry[lane] == EMBREE_NONE) {
-        float direction[3] = {packet->direction[0][lane], packet->direction[1][lane],
-                              packet->direction[2][lane]};
-        float sky[3];
-        sky_radiance(&scene->sky, direction, sky);
-        for (int i = 0; i < 3; i++)
-            sum[i] += sky[i];
-        return;
+    float direction[3] = {packet->direction[0][lane], packet->direction[1][lane],
+                          packet->direction[2][lane]};
+    float sky[3];
+    sky_radiance(&picture->traced.scene->sky, direction, sky);
+    for (int i = 0; i < 3; i++)
+        work->sums[work->slot[lane]][i] += sky[i];
+}
+
+static void shade_lane(const struct picture *picture, struct tile_work *work,
+                       const struct sights *sights, int lane)
+{
+    const struct fog *fog = &picture->traced.scene->fog;
+    float *sum = work->sums[work->slot[lane]], white[3];
+    surface_albedo(sights->surface[lane], &work->packet, lane, white);
+    if (picture->effects & EFFECT_FOG) {
+        float clear = expf(-fog->density_per_m * work->packet.far[lane]);
+        for (int i = 0; i < 3; i++) {
+            white[i] *= clear;
+            sum[i] += (1 - clear) * fog->color[i];
+        }
     }
-    struct sight sight;
-    sight_find(picture, packet, lane, &sight);
-    float clear = 1;
-    if (picture->effects & EFFECT_FOG)
-        clear = expf(-scene->fog.density_per_m * sight.distance_m);
-    float white[3];
-    for (int i = 0; i < 3; i++) {
-        white[i] = clear * sight.albedo[i];
-        sum[i] += (1 - clear) * scene->fog.color[i];
+    sum[3] += sights->surface[lane]->plant ? 1.0f : 0.0f;
+    if (picture->sun_shines)
+        light_sun(picture, work, sights, lane, white);
+    if (picture->sky_shines)
+        light_sky(picture, work, sights, lane, white);
+}
+
+/* Makes the directions unit and starts the rays at the near plane. */
+static void packet_aim(const struct picture *picture, struct embree_packet *packet)
+{
+    const struct view *view = picture->view;
+    for (int i = 0; i < EMBREE_LANES; i++) {
+        float x = packet->direction[0][i], y = packet->direction[1][i], z = packet->direction[2][i];
+        float length = sqrtf(x * x + y * y + z * z), inverse = 1 / length;
+        packet->direction[0][i] = x * inverse;
+        packet->direction[1][i] = y * inverse;
+        packet->direction[2][i] = z * inverse;
+        packet->near[i] = view->near_m * length;
+        packet->far[i] = INFINITY;
+        for (int axis = 0; axis < 3; axis++)
+            packet->origin[axis][i] = view->eye_m[axis];
     }
-    sum[3] += (float)sight.surface->plant;
-    if (picture->sun[0] + picture->sun[1] + picture->sun[2] > 0)
-        light_sun(picture, work, &sight, white, work->slot[lane]);
-    if (picture->ambient[0] + picture->ambient[1] + picture->ambient[2] > 0)
-        light_sky(picture, work, &sight, white, lane);
 }
 
 static void packet_trace(const struct picture *picture, struct tile_work *work,
                          struct ray_counts *counts)
 {
+    struct sights sights;
+    packet_aim(picture, &work->packet);
     embree_intersect(picture->traced.embree, &work->packet, work->lanes, false);
+    sights_find(picture, &work->packet, work->lanes, &sights);
     counts->primary += work->lanes;
     counts->shadow -= work->sun.count;
     counts->occlusion -= work->sky.count;
     for (int lane = 0; lane < work->lanes; lane++)
-        shade_lane(picture, work, lane);
+        if (sights.surface[lane])
+            shade_lane(picture, work, &sights, lane);
+        else
+            shade_sky(picture, work, lane);
     counts->shadow += work->sun.count;
     counts->occlusion += work->sky.count;
     work->lanes = 0;
@@ -274,23 +343,6 @@ static void packet_trace(const struct picture *picture, struct tile_work *work,
         queue_trace(picture, work, &work->sun);
     if (work->sky.count > QUEUE_RAYS - EMBREE_LANES)
         queue_trace(picture, work, &work->sky);
-}
-
-static void ray_push(const struct picture *picture, struct tile_work *work, const float at_px[2])
-{
-    const struct view *view = picture->view;
-    struct embree_packet *packet = &work->packet;
-    float direction[3];
-    view_ray(view, at_px[0], at_px[1], direction);
-    int lane = work->lanes++;
-    float depth = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        packet->origin[axis][lane] = view->eye_m[axis];
-        packet->direction[axis][lane] = direction[axis];
-        depth += direction[axis] * view->forward[axis];
-    }
-    packet->near[lane] = view->near_m / depth;
-    packet->far[lane] = INFINITY;
 }
 
 static void pixel_trace(const struct picture *picture, struct tile_work *work, int x, int y,
@@ -308,8 +360,12 @@ static void pixel_trace(const struct picture *picture, struct tile_work *work, i
             work->replicate[work->lanes] = replicate;
             work->index[work->lanes] = index;
             work->slot[work->lanes] = local * REFERENCE_REPLICATES + replicate;
-            ray_push(picture, work, (float[2]){(float)x + point[0], (float)y + point[1]});
-            if (work->lanes == EMBREE_LANES)
+            float across = (float)x + point[0], along = (float)y + point[1];
+            for (int axis = 0; axis < 3; axis++)
+                work->packet.direction[axis][work->lanes] = picture->corner[axis] +
+                                                            across * picture->step_x[axis] +
+                                                            along * picture->step_y[axis];
+            if (++work->lanes == EMBREE_LANES)
                 packet_trace(picture, work, counts);
         }
     }
@@ -337,8 +393,9 @@ void tile_trace(const struct picture *picture, struct tile_work *work, int tile,
             const float *sums =
                 work->sums[((y - top) * TILE_SIDE + x - left) * REFERENCE_REPLICATES];
             float *total = samples->sums[pixel][0];
+            bool first = samples->counts[pixel] == 0; /* a write, not a read of fresh memory */
             for (int i = 0; i < REFERENCE_REPLICATES * 4; i++)
-                total[i] += sums[i];
+                total[i] = first ? sums[i] : total[i] + sums[i];
             samples->counts[pixel] = samples->wanted[pixel];
         }
 }
