@@ -11,6 +11,8 @@
 #include <math.h>
 #include <string.h>
 
+#define WORLD_TREES 64
+
 struct world {
     struct arena *arena;
     struct scene scene;
@@ -31,8 +33,8 @@ static inline struct world world_create(int width_px, int height_px, double fov_
     scene->sun.elevation_rad = scene->sun.end_elevation_rad = (float)(M_PI / 2);
     for (int i = 0; i < 3; i++)
         scene->sun.radiance[i] = 1;
-    scene->species = ARENA_ARRAY(world.arena, struct species, 8);
-    scene->instances = ARENA_ARRAY(world.arena, struct instance, 4096);
+    scene->species = ARENA_ARRAY(world.arena, struct species, WORLD_TREES);
+    scene->instances = ARENA_ARRAY(world.arena, struct instance, WORLD_TREES);
     return world;
 }
 
@@ -122,6 +124,7 @@ static inline struct instance *world_add(struct world *world, const struct mesh 
                                          float y, float z)
 {
     struct scene *scene = &world->scene;
+    assert_true(scene->instances_count < WORLD_TREES);
     struct species *species = &scene->species[scene->species_count];
     *species = (struct species){"test", plant_from_mesh(world->arena, "test", mesh), 1, 1, 1};
     struct instance *instance = &scene->instances[scene->instances_count++];

@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Counted up whenever a picture would change. */
-#define TRACER_VERSION 1
+#define TRACER_VERSION 2
 #define THREADS_LIMIT 1024
 
 static uint32_t power_of_two(int count)
@@ -104,10 +104,9 @@ static void picture_set(const struct scene *scene, const struct view *view,
 /* What a picture needs while it is made. */
 struct render {
     struct picture picture;
-    struct plan_limits limits;
+    struct plan plan;
     struct samples samples;
     float (*variance)[4];
-    int16_t *levels;
     size_t pixels;
     int tiles, threads;
     struct tile_work **works; /* one a thread */
@@ -126,7 +125,9 @@ static void render_allocate(struct arena *arena, struct render *render)
     render->samples.counts = ARENA_ARRAY(arena, uint32_t, render->pixels);
     render->samples.wanted = ARENA_ARRAY(arena, uint32_t, render->pixels);
     memset(render->samples.counts, 0, render->pixels * sizeof *render->samples.counts);
-    render->levels = ARENA_ARRAY(arena, int16_t, render->pixels);
+    render->plan.levels = ARENA_ARRAY(arena, int16_t, render->pixels);
+    render->plan.width_px = picture->width_px;
+    render->plan.scale[0] = render->plan.scale[1] = PLAN_SCALE_LEAST;
     render->variance = arena_alloc(arena, render->pixels, sizeof *render->variance);
     render->works = ARENA_ARRAY(arena, struct tile_work *, (size_t)render->threads);
     for (int i = 0; i < render->threads; i++)
@@ -171,14 +172,14 @@ static double samples_missing(const struct samples *samples, size_t pixels)
 
 static bool render_plan(struct render *render)
 {
-    return plan_next(&render->limits, render->levels, (const float(*)[4])render->variance,
-                     render->pixels, &render->samples);
+    return plan_next(&render->plan, (const float(*)[4])render->variance, render->pixels,
+                     &render->samples);
 }
 
 static void render_passes(struct render *render, bool quiet)
 {
-    bool adaptive = render->limits.target > 0;
-    uint32_t count = adaptive ? render->limits.samples_min : render->limits.samples_max;
+    bool adaptive = render->plan.limits.target > 0;
+    uint32_t count = adaptive ? render->plan.limits.samples_min : render->plan.limits.samples_max;
     for (size_t i = 0; i < render->pixels; i++)
         render->samples.wanted[i] = count;
     double missing = samples_missing(&render->samples, render->pixels);
@@ -188,7 +189,7 @@ static void render_passes(struct render *render, bool quiet)
     if (!adaptive)
         return;
     plan_levels((const float(*)[4])render->variance, render->picture.width_px,
-                render->picture.height_px, render->levels);
+                render->picture.height_px, render->plan.levels);
     if (!render_plan(render))
         return;
     /* The first plan foresees nearly all that is to come. */
@@ -247,7 +248,7 @@ enum status reference_render(struct arena *arena, const struct scene *scene,
 {
     struct render render = {0};
     struct reference_stats made = {0};
-    enum status status = request_check(view, options, &render.limits, error);
+    enum status status = request_check(view, options, &render.plan.limits, error);
     if (status)
         return status;
     picture_set(scene, view, options, &render.picture);

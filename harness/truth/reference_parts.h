@@ -102,10 +102,19 @@ struct plan_limits {
     uint32_t samples_min, samples_max; /* powers of two */
     double target;                     /* standard error, RMS over pixels and RGB */
 };
+
+#define PLAN_SCALE_LEAST (-2 * PLAN_LEVELS)
+
+struct plan {
+    struct plan_limits limits;
+    int width_px;
+    int16_t *levels; /* a pixel */
+    int scale[2];    /* of the two halves of the picture; at first PLAN_SCALE_LEAST */
+};
 /* Sets wanted so that the target is likely to be met. variance: of the means now. False when
  * nothing more can or need be done. */
-bool plan_next(const struct plan_limits *limits, const int16_t *levels, const float (*variance)[4],
-               size_t pixels, struct samples *samples);
+bool plan_next(struct plan *plan, const float (*variance)[4], size_t pixels,
+               struct samples *samples);
 /* RMS over pixels and RGB of the standard error. */
 double plan_standard_error(const float (*variance)[4], size_t pixels);
 

@@ -1,11 +1,13 @@
 /* Where the reference's samples go: variance from replicates, and an allocation that does not bias.
  *
  * Spending samples where the estimate of a pixel's own variance is large would bias the pixel's
- * mean, because the two are correlated (a pixel that happens to miss a bright leaf looks both dark
- * and quiet, and is left alone). Here the share of a pixel comes from the pilot variances of its
- * neighbours alone, which are independent of its own samples; the only other thing that enters is
- * one scale for the whole picture. So the mean and the stated variance of a pixel stay unbiased up
- * to its own part in that scale, of the order of 1 / pixels.
+ * mean, because the two are correlated: a pixel that happens to miss a bright leaf looks both dark
+ * and quiet, and is left alone. So nothing that is decided about a pixel looks at the pixel itself.
+ * Its share comes from the pilot variances of its neighbours, and the scale that turns shares into
+ * samples comes from the other half of the picture (the squares of the other colour of a
+ * chessboard). Both are independent of the pixel's own samples in the first round; later rounds
+ * only see how often the others were sampled through the noise of their variances. The price: the
+ * error asked for is met by the forecast from the other half, not by force.
  *
  * Shares follow Neyman 1934: with a variance that falls as v n^-p the total is smallest for n ~
  * v^(1 / (1 + p)). */
@@ -97,14 +99,15 @@ static int doublings_for(const struct plan_limits *limits, int level, int scale)
     return doublings < least ? least : doublings > most ? most : doublings;
 }
 
-#define DOUBLINGS 32
+#define DOUBLINGS 17 /* up to REFERENCE_SAMPLES_LIMIT */
 
-/* Sum of the variances of all pixels of a level that have 2^j samples now. */
+/* Sum of the variances of the half's pixels of a level that have 2^j samples now. */
 struct plan_table {
     double variance[PLAN_LEVELS][DOUBLINGS];
+    double pixels;
 };
 
-/* The sum of variances to be expected when the samples are scaled. */
+/* The mean variance to be expected of the half at a scale. */
 static double plan_predict(const struct plan_limits *limits, const struct plan_table *table,
                            int scale)
 {
@@ -113,32 +116,54 @@ static double plan_predict(const struct plan_limits *limits, const struct plan_t
         int then = doublings_for(limits, i - PLAN_LEVELS / 2, scale);
         for (int now = 0; now < DOUBLINGS; now++)
             if (table->variance[i][now] > 0)
-                sum += table->variance[i][now] * exp2(-FALL * (then > now ? then - now : 0));
+                sum += table->variance[i][now] * exp2(-FALL * (then - now));
     }
-    return sum;
+    return sum / (3 * table->pixels);
 }
 
-bool plan_next(const struct plan_limits *limits, const int16_t *levels, const float (*variance)[4],
-               size_t pixels, struct samples *samples)
+/* The least scale at which the half is expected to meet the target, a little tightened. */
+static int plan_scale(const struct plan_limits *limits, const struct plan_table *table)
 {
-    struct plan_table table = {0};
-    for (size_t i = 0; i < pixels; i++)
-        table.variance[levels[i] + PLAN_LEVELS / 2][__builtin_ctz(samples->counts[i])] +=
-            (double)variance[i][0] + variance[i][1] + variance[i][2];
-    double allowed = 3 * (double)pixels * limits->target * limits->target;
-    int low = -2 * PLAN_LEVELS, high = 2 * PLAN_LEVELS; /* high: samples_max everywhere */
-    if (plan_predict(limits, &table, low) <= allowed)
-        return false;
+    double allowed = 0.97 * limits->target * 0.97 * limits->target;
+    int low = PLAN_SCALE_LEAST, high = -PLAN_SCALE_LEAST; /* high: samples_max everywhere */
     while (high - low > 1) {
         int middle = low + (high - low) / 2;
-        if (plan_predict(limits, &table, middle) <= allowed)
+        if (plan_predict(limits, table, middle) <= allowed)
             high = middle;
         else
             low = middle;
     }
+    return high;
+}
+
+static int half_of(const struct plan *plan, size_t pixel)
+{
+    size_t width = (size_t)plan->width_px;
+    return (int)((pixel / width + pixel % width) & 1);
+}
+
+bool plan_next(struct plan *plan, const float (*variance)[4], size_t pixels,
+               struct samples *samples)
+{
+    struct plan_table tables[2] = {0};
+    for (size_t i = 0; i < pixels; i++) {
+        struct plan_table *table = &tables[half_of(plan, i)];
+        table->variance[plan->levels[i] + PLAN_LEVELS / 2][__builtin_ctz(samples->counts[i])] +=
+            (double)variance[i][0] + variance[i][1] + variance[i][2];
+        table->pixels++;
+    }
+    double target = plan->limits.target;
+    for (int half = 0; half < 2; half++) {
+        const struct plan_table *other = &tables[tables[!half].pixels > 0 ? !half : half];
+        if (plan_predict(&plan->limits, other, plan->scale[half]) > target * target) {
+            int scale = plan_scale(&plan->limits, other);
+            plan->scale[half] = scale > plan->scale[half] ? scale : plan->scale[half];
+        }
+    }
     bool more = false;
     for (size_t i = 0; i < pixels; i++) {
-        uint32_t wish = 1u << doublings_for(limits, levels[i], high);
+        uint32_t wish =
+            1u << doublings_for(&plan->limits, plan->levels[i], plan->scale[half_of(plan, i)]);
         samples->wanted[i] = wish > samples->counts[i] ? wish : samples->counts[i];
         more |= samples->wanted[i] > samples->counts[i];
     }
