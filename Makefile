@@ -60,7 +60,7 @@ BINARY := $(BUILD)/treeline
 IMAGE_SO := $(BUILD)/treeline_image.so
 TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(sort $(wildcard tests/test_*.c)))
 
-.PHONY: all bench check test install format lint clean packages
+.PHONY: all plugins bench check test install format lint clean packages
 .DELETE_ON_ERROR:
 .SECONDARY: $(GENERATED_C) $(GENERATED_H)
 
@@ -150,6 +150,14 @@ $(BUILD)/tests/%: tests/%.c $(ARCHIVE) | $(GENERATED_H)
 	$(CC) $(CFLAGS_ALL) -Itests $(shell pkg-config --cflags cmocka gsl 2>/dev/null) $(LDFLAGS_ALL) -o $@ $< \
 	    $(if $(WHOLE),-Wl$(comma)--whole-archive) $(ARCHIVE) -Wl,--no-whole-archive $(LIBS) -lcmocka -lgsl -lgslcblas
 
+# Methods that go wrong, as shared objects, for the tests.
+PLUGINS := $(patsubst tests/data/plugins/%.c,$(BUILD)/plugins/%.so,$(wildcard tests/data/plugins/*.c))
+$(BUILD)/plugins/%.so: tests/data/plugins/%.c | $(GENERATED_H)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -shared -o $@ $<
+$(BUILD)/tests/test_cell $(BUILD)/tests/test_plan: | $(PLUGINS)
+plugins: $(PLUGINS)
+
 T ?=
 test: $(if $(T),$(BUILD)/tests/$(T),$(TESTS)) all
 	@tests/run.sh $(if $(T),$(BUILD)/tests/$(T),$(TESTS))
@@ -172,6 +180,8 @@ install: all
 	install -m755 $(IMAGE_SO) $(DESTDIR)$(PREFIX)/lib/treeline/
 	cp -r scenes $(DESTDIR)$(PREFIX)/share/treeline/
 	install -Dm644 -t $(DESTDIR)$(PREFIX)/share/treeline/reports/template reports/template/*
+	install -d $(DESTDIR)$(PREFIX)/share/man/man1
+	$(BINARY) help man > $(DESTDIR)$(PREFIX)/share/man/man1/treeline.1
 
 FORMAT := $(shell git ls-files '*.c' '*.h' '*.cpp' 2>/dev/null)
 format:

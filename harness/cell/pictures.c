@@ -42,9 +42,23 @@ static double trees_distance_m(const struct scene *scene, const struct view *vie
     return median;
 }
 
+/* NaN everywhere first, so that a pixel that is not drawn is found out (8-bit targets cannot hold
+ * it). */
+static void target_spoil(struct stage *stage)
+{
+    const struct target *target = &stage->target;
+    const float nothing[4] = {NAN, NAN, NAN, NAN};
+    if (stage->gl && target->format != TARGET_RGBA8)
+        stage->gl->ClearNamedFramebufferfv(target->framebuffer, GL_COLOR, 0, nothing);
+    size_t values = 4 * (size_t)target->width_px * (size_t)target->height_px;
+    for (size_t i = 0; !stage->gl && i < values; i++)
+        target->pixels[i] = NAN;
+}
+
 static enum status picture_draw(struct stage *stage, const struct view *view, struct album *album,
                                 struct frame **frame)
 {
+    target_spoil(stage);
     if (stage->gl) {
         gl_counters_reset(stage->gl);
         gl_statistics_begin(stage->gl);

@@ -65,11 +65,11 @@ int man_page(void)
         if (code)
             return code;
     }
-    printf(".SH EXIT STATUS\n.TS\nr l l.\n");
-#define STATUS_ROW(name, code, word, meaning) printf("%d\t%s\t%s\n", code, word, meaning);
+    printf(".SH EXIT STATUS\n");
+#define STATUS_ROW(name, code, word, meaning) printf(".TP\n%d %s\n%s\n", code, word, meaning);
     STATUS_LIST(STATUS_ROW)
 #undef STATUS_ROW
-    printf(".TE\n.SH ENVIRONMENT\n"
+    printf(".SH ENVIRONMENT\n"
            ".TP\nTREELINE_CACHE\nfolder of the cache of built things; off disables it\n"
            ".TP\nTREELINE_DATA\nfolder that holds scenes/\n"
            ".TP\nTREELINE_GL\nGL back end: osmesa, egl\\-surfaceless or egl\\-device\n"

@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/progress.h"
 #include "cell/cell.h"
+#include "report/report.h"
 #include "results/run.h"
 
 #include <signal.h>
@@ -191,10 +192,20 @@ static enum status plan_print(const struct plan *plan)
     return STATUS_OK;
 }
 
+static enum status report_make(struct arena *arena, const char *folder, struct error *error)
+{
+    const char *slash = strrchr(folder, '/');
+    const char *out = arena_printf(arena, "reports/%s", slash ? slash + 1 : folder);
+    enum status status = report_write(folder, out, error);
+    if (!status)
+        printf("%s/index.html\n", out);
+    return status;
+}
+
 int verb_run(int argc, char **argv)
 {
     struct arena *arena = arena_create(0);
-    struct error error = {0};
+    struct error error = {0}, later = {0};
     struct run_request request = {0};
     struct plan *plan;
     const char *command = command_join(arena, argc, argv);
@@ -207,6 +218,14 @@ int verb_run(int argc, char **argv)
     }
     const char *folder = folder_choose(arena, &request, plan);
     status = run_all(arena, &request, plan, folder, command, &error);
+    bool finished = status == STATUS_OK || status == STATUS_CELLS_FAILED;
+    enum status then = STATUS_OK;
+    if (finished)
+        then = run_table(arena, folder, request.json, &later);
+    if (finished && !then && request.report)
+        then = report_make(arena, folder, &later);
     arena_destroy(arena);
-    return status ? cli_fail(&error) : STATUS_OK;
+    if (then)
+        cli_fail(&later);
+    return status ? cli_fail(&error) : (int)then;
 }

@@ -3,6 +3,7 @@
 
 const struct verb verbs[] = {
     {"run", "time cells, draw and judge their pictures", verb_run},
+    {"report", "write the page, plots and tables of a run", verb_report},
     {"list", "list methods, scenes, metrics or plants", verb_list},
     {"render", "draw one view of a cell to an EXR or PNG file", verb_render},
     {"reference", "ray trace one view to an EXR or PNG file", verb_reference},

@@ -1,0 +1,254 @@
+#!/usr/bin/env bash
+# The command line from outside: exit codes, one clear line an error, stdout apart from stderr, interruption,
+# kill -9, resuming, full disks.  tests/cli.sh [BINARY]
+set -u
+cd "$(dirname "$0")/.." || exit 1
+binary=$(realpath "${1:-build/release-gcc/treeline}")
+plugins=$(dirname "$binary")/plugins
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export TREELINE_CACHE="$work/cache" TREELINE_DATA="$PWD"
+passed=0 failed=0 skipped=0
+
+ok() { passed=$((passed + 1)); printf 'ok      %s\n' "$1"; }
+bad() { failed=$((failed + 1)); printf 'FAILED  %s\n' "$1"; shift; printf '        %s\n' "$@"; }
+# is NAME CONDITION...: a test(1) expression
+is() { local name=$1; shift; if test "$@"; then ok "$name"; else bad "$name" "not: $*"; fi; }
+
+# try: runs treeline; leaves rc, $work/out and $work/err
+try() { "$binary" "$@" >"$work/out" 2>"$work/err"; rc=$?; }
+
+# refuses NAME CODE PATTERN ARGUMENT...: that exit code, nothing on stdout, one line on stderr that matches
+# (getopt's own line is followed by one that names --help)
+refuses() {
+  local name=$1 code=$2 pattern=$3 lines
+  shift 3
+  try "$@"
+  lines=$(grep -cv '^Try ' "$work/err")
+  if [ $rc -eq "$code" ] && [ ! -s "$work/out" ] && [ "$lines" -eq 1 ] && grep -qE -- "$pattern" "$work/err"; then
+    ok "$name"
+  else
+    bad "$name" "treeline $*" "exit code $rc, wanted $code; stderr: $(head -c 300 "$work/err")"
+  fi
+}
+# prints NAME PATTERN ARGUMENT...: exit code 0, stdout matches, stderr empty
+prints() {
+  local name=$1 pattern=$2
+  shift 2
+  try "$@"
+  if [ $rc -eq 0 ] && [ ! -s "$work/err" ] && grep -qE -- "$pattern" "$work/out"; then
+    ok "$name"
+  else
+    bad "$name" "treeline $*" "exit code $rc; stdout: $(head -c 200 "$work/out"); stderr: $(head -c 200 "$work/err")"
+  fi
+}
+lines() { wc -l <"$1"; }
+fast=(--frame-seconds 0.02 --frames-max 5 --views 1 --reference-error 0.1 --reference-samples 16)
+good=(--scene tiny --method null --trees 1 --size 32x24)
+make -s -j"$(nproc)" plugins >/dev/null 2>&1
+[ -f "$plugins/bad.so" ] || make -s CC="${CC:-gcc}" "${plugins#"$PWD"/}/bad.so" >/dev/null
+
+# 1. A wrong command line.
+try; is 'no verb prints the verbs on stderr and is usage' "$rc" -eq 64 -a ! -s "$work/out" -a -s "$work/err"
+refuses 'an unknown verb names the nearest' 64 "no verb 'rnu'; did you mean 'run'" rnu
+refuses 'an unknown option is named' 64 "unrecognized option '--rouds=3'" run --rouds=3
+refuses 'an option without its value is named' 64 "option '--trees' requires an argument" run --trees
+refuses 'nothing to run' 64 'no scene' run
+refuses 'a scene without a method' 64 'no method' run --scene tiny
+refuses 'rounds that are no number' 64 "--rounds: 'many' is not a whole number in 1..10000" run "${good[@]}" --rounds many
+refuses 'rounds out of range' 64 "--rounds: '0'" run "${good[@]}" --rounds 0
+refuses 'a negative time limit' 64 "--timeout: '-3'" run "${good[@]}" --timeout=-3
+refuses 'a time limit that is not finite' 64 "--timeout: 'nan'" run "${good[@]}" --timeout nan
+refuses 'a size of memory that is none' 64 "--memory: '3Q'" run "${good[@]}" --memory 3Q
+refuses 'a seed that is no number' 64 "seed: '1.5'" run "${good[@]}" --seed 1.5
+refuses 'two plans' 64 "'quick' is too much" run smoke quick
+refuses '--resume without a folder' 64 '--out' run "${good[@]}" --resume
+refuses '--retry without --resume' 64 '--resume' run "${good[@]}" --retry --out "$work/x"
+refuses 'trees out of range' 65 "trees: '-1' is not a whole number in 0..4000000" run --scene tiny --method null --trees=-1
+refuses 'an unknown level' 65 'low.intermediate.high.auto' run "${good[@]}" --lod best
+refuses 'an unknown target' 65 'rgba8.rgba16f.rgba32f' run "${good[@]}" --target rgb
+refuses 'a size that is none' 65 'WIDTHxHEIGHT' run --scene tiny --method null --size 800
+refuses 'an unknown scene names the nearest' 66 'tiny' run --scene tinny --method null
+refuses 'an unknown method names the nearest' 66 "did you mean 'null'" run --scene tiny --method nul
+refuses 'an option that a method does not have' 65 'views' run --scene tiny --method null:views=3
+refuses 'a plugin that does not exist' 66 'no/such.so' run --scene tiny --method no/such.so
+refuses 'a plugin of another ABI' 65 'ABI 2' run --scene tiny --method "$plugins/old.so"
+refuses 'an unknown plan lists the plans' 66 'smoke' run no-such-plan
+refuses 'a filter that matches nothing' 65 'none of the 1 cells' run "${good[@]}" --filter trees=9
+refuses 'a filter that is no expression' 65 'regular expression' run "${good[@]}" --filter '('
+refuses 'an unknown back end' 65 'dx12' run "${good[@]}" --backend dx12
+refuses 'a bad cell' 65 'SCENE/METHOD' run --cell nonsense
+refuses 'a scene file that is not JSON' 65 "$work/bad.json:1" run --scene "$(echo '{x' >"$work/bad.json"; echo "$work/bad.json")" --method null
+refuses 'a plan file with an unknown key' 65 'scene.*not a key' run "$(echo '{"scene": "tiny"}' >"$work/p.json"; echo "$work/p.json")"
+refuses 'a folder that cannot be made' 74 '/proc/x' run "${good[@]}" --out /proc/x/y -q
+refuses 'render without a scene' 64 'which scene' render
+refuses 'render without a method' 64 'which method' render --scene tiny -o "$work/a.png"
+refuses 'an eye without a target' 64 '--eye and --target' render --scene tiny --method null --eye 1,2,3
+refuses 'an eye that is no vector' 64 "--eye: '1,2'" render --scene tiny --method null --eye 1,2 --target 0,0,0
+refuses 'an eye that is not finite' 64 "--eye: 'nan,0,0'" render --scene tiny --method null --eye nan,0,0 --target 0,0,0
+refuses 'a time beyond the path' 64 "--time: '2'" render --scene tiny --method null --time 2
+refuses 'a picture of an unknown kind' 65 'gif' render --scene tiny --method null -o "$work/a.gif"
+refuses 'a picture in no folder' 74 'no/a.png' render --scene tiny --method null -o "$work/no/a.png"
+refuses 'an unknown effect' 64 "effects: 'rain'" reference --scene tiny --effects rain
+refuses 'an unknown list' 64 "'trees' is not one of" list trees
+refuses 'an unknown topic' 66 "'nothing' is no verb" help nothing
+refuses 'a report of nothing' 64 'which run' report
+refuses 'a report of a folder that is no run' 66 'cells.jsonl' report "$work"
+refuses 'an unknown action on the cache' 64 "'burn' is not one of" cache burn
+refuses 'trimming to no size' 64 'to which size' cache trim
+
+# 2. What is asked for stands on stdout, alone.
+prints 'help lists the verbs' '^  run ' help
+prints '--help is help' '^  run ' --help
+prints 'help of a verb' '--frame-seconds=S' help run
+prints 'help of a method' '^kind: GL' help null
+prints 'help of a plant lists its options' 'height' help poplar
+prints 'help of the exit codes' '^ +75 +timeout ' help exit
+prints 'help of plans' 'reference_error' help plan
+prints 'version' '^treeline ' --version
+prints 'the manual page' '^\.SH EXIT STATUS' help man
+prints 'methods' '^null +GL' list methods
+prints 'scenes' '^tiny +96x72' list scenes
+prints 'metrics' '^rmse +linear' list metrics
+prints 'plants with their triangles' '^poplar +98286 ' list plants
+prints 'the cache has a place' "^$work/cache\$" cache path
+for what in methods scenes metrics plants; do
+  try list $what --json
+  if python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); assert d[sys.argv[2]]' "$work/out" $what; then
+    ok "list $what --json is JSON"
+  else
+    bad "list $what --json is JSON"
+  fi
+done
+prints 'every exit code has a row' '^ 130 +interrupted' help exit
+if command -v man >/dev/null && "$binary" help man >"$work/t.1" && man --warnings -l "$work/t.1" >/dev/null 2>"$work/err"; then
+  is 'the manual page formats without warnings' ! -s "$work/err"
+fi
+"$binary" help exit >/dev/full 2>"$work/err"; rc=$?
+is 'a full disk behind stdout is an error' $rc -eq 74
+
+# 3. A run.
+try run "${good[@]}" --lod high,low --rounds 3 --dry-run
+is 'a dry run prints the cells and touches nothing' "$rc" -eq 0 -a "$(lines "$work/out")" -eq 2 -a ! -e results/command-line
+cell=$(head -1 "$work/out")
+try run --cell "$cell" --dry-run
+is 'a name can be pasted back' "$(cat "$work/out")" = "$cell"
+try run "$cell" --dry-run
+is 'a name can be pasted as an argument' "$(cat "$work/out")" = "$cell"
+
+try run "${good[@]}" "${fast[@]}" --rounds 2 --out "$work/run"
+is 'a run succeeds' $rc -eq 0
+is 'its table is on stdout' "$(grep -c 'tiny/null/trees=1.* ok' "$work/out")" -eq 1
+is 'its notes are on stderr' "$(grep -c 'repetitions of 1 cell' "$work/err")" -eq 1
+is 'one line for the run and one for each repetition' "$(lines "$work/run/cells.jsonl")" -eq 3
+refuses 'a folder with a run is not mixed' 64 '--resume' run "${good[@]}" "${fast[@]}" --out "$work/run" -q
+try run "${good[@]}" "${fast[@]}" --rounds 2 --out "$work/run" --resume -q
+is 'nothing is left to resume' $rc -eq 0 -a "$(lines "$work/run/cells.jsonl")" -eq 3
+try run "${good[@]}" "${fast[@]}" --rounds 3 --out "$work/run/" --resume -q --json
+is 'more rounds are only the new ones' $rc -eq 0 -a "$(lines "$work/run/cells.jsonl")" -eq 4
+is 'quiet is quiet' ! -s "$work/err"
+if python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); assert d["cells"][0]["repetitions"]==3' "$work/out"; then
+  ok 'the table as JSON'
+else
+  bad 'the table as JSON' "$(head -c 300 "$work/out")"
+fi
+if python3 - "$work/run/cells.jsonl" <<'P'; then ok 'every line is strict JSON of version 1'; else bad 'every line is strict JSON of version 1'; fi
+import json, sys
+def no(x): raise ValueError(x)
+for line in open(sys.argv[1]):
+    assert json.loads(line, parse_constant=no)["version"] == 1
+P
+
+# 4. Cells that fail are results.
+try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q
+is 'failed cells end in 77' $rc -eq 77
+is 'all of them are in the file' "$(lines "$work/fails/cells.jsonl")" -eq 5
+is 'a crash is called a crash' "$(grep -c '"status":"crash"' "$work/fails/cells.jsonl")" -eq 2
+try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q --resume
+is 'resuming keeps failures' "$(lines "$work/fails/cells.jsonl")" -eq 5
+try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q --resume --retry
+is '--retry runs them again' "$(lines "$work/fails/cells.jsonl")" -eq 8
+try run --scene tiny --method "$plugins/bad.so:way=hang" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --timeout 0.5 --out "$work/hang" -q
+is 'a timeout is a result' "$(grep -c '"status":"timeout"' "$work/hang/cells.jsonl")" -eq 1
+
+# 5. Interruption. The slow method takes 50 ms a frame.
+slow=(--scene tiny --method "$plugins/bad.so:way=slow" --trees 1 --size 32x24,33x24,34x24 --frame-seconds 0.2
+  --views 1 --rounds 3 --reference-error 0.1 --reference-samples 16)
+# wait_lines FILE N: until the file has N lines, 60 s at most
+wait_lines() { for _ in $(seq 600); do [ -f "$1" ] && [ "$(lines "$1")" -ge "$2" ] && return; sleep 0.1; done; }
+# finish NAME DIR: resumes, and checks that each (cell, repetition) stands once
+finish() {
+  try run "${slow[@]}" --out "$2" -q --resume
+  python3 - "$2/cells.jsonl" <<'P' >"$work/py" 2>&1
+import json, sys
+rows = [json.loads(l) for l in open(sys.argv[1])][1:]
+keys = [(r["cell"], r["repetition"]) for r in rows]
+assert len(keys) == len(set(keys)) == 9, keys
+assert all(r["status"] == "ok" for r in rows)
+P
+  if [ $? -eq 0 ] && [ $rc -eq 0 ]; then ok "$1"; else bad "$1" "exit code $rc" "$(tail -3 "$work/py")"; fi
+}
+for signal in INT TERM; do
+  dir=$work/stop-$signal
+  "$binary" run "${slow[@]}" --out "$dir" -q >"$work/out" 2>"$work/err" &
+  pid=$!
+  wait_lines "$dir/cells.jsonl" 3
+  before=$(lines "$dir/cells.jsonl")
+  start=$SECONDS
+  kill -$signal $pid
+  wait $pid; rc=$?
+  is "SIG$signal ends in 130" $rc -eq 130
+  is "SIG$signal ends soon" $((SECONDS - start)) -le 3
+  is "SIG$signal is told in one line that names --resume" "$(grep -c -- '--resume' "$work/err")" -eq 1
+  is "SIG$signal loses no finished repetition" "$(lines "$dir/cells.jsonl")" -ge "$before"
+  is "SIG$signal leaves no half line" "$(tail -c 1 "$dir/cells.jsonl" | od -An -c | tr -d ' ')" = '\n'
+  finish "after SIG$signal --resume does the rest" "$dir"
+done
+
+dir=$work/killed
+"$binary" run "${slow[@]}" --out "$dir" -q >/dev/null 2>&1 &
+pid=$!
+wait_lines "$dir/cells.jsonl" 3
+refuses 'two runs into one folder are refused' 64 'another run' run "${slow[@]}" --out "$dir" -q --resume
+before=$(lines "$dir/cells.jsonl")
+children=$(pgrep -P $pid)
+{ kill -KILL $pid; wait $pid; } 2>/dev/null
+is 'kill -9 loses no finished repetition' "$(lines "$dir/cells.jsonl")" -ge "$before"
+sleep 0.3
+alive=0
+for child in $children; do grep -qs '^State:[[:space:]]*[^ZX]' "/proc/$child/status" && alive=1; done
+is 'kill -9 leaves no cell running' $alive -eq 0
+printf '{"version":1,"cell":"half a li' >>"$dir/cells.jsonl"
+finish 'after kill -9 and a torn line --resume does the rest' "$dir"
+
+# 6. A full disk: nothing is lost, the run says so.
+if mkdir "$work/small" && mount -t tmpfs -o size=48k tmpfs "$work/small" 2>/dev/null; then
+  try run "${good[@]}" "${fast[@]}" --frames-max 4000 --frame-seconds 0.5 --size 8x8 --rounds 30 --out "$work/small/run" -q
+  is 'a full disk ends in a code of its own' $rc -eq 74 -o $rc -eq 77
+  is 'a full disk is told' "$(grep -c 'No space left\|failed' "$work/err")" -ge 1
+  is 'a full disk leaves whole lines' "$(tail -c 1 "$work/small/run/cells.jsonl" | od -An -c | tr -d ' ')" = '\n'
+  umount "$work/small"
+else
+  skipped=$((skipped + 1))
+  printf 'skipped a full disk (no tmpfs may be mounted here)\n'
+fi
+
+# 7. Pictures.
+try render --scene tiny --method null --size 40x30 -o "$work/a.exr" -q
+is 'render writes an EXR' $rc -eq 0 -a -s "$work/a.exr"
+try render --scene tiny --method null --size 40x30 -o "$work/b.exr" -q
+is 'the same cell is the same file' $rc -eq 0 -a "$(cmp "$work/a.exr" "$work/b.exr" && echo same)" = same
+try render tiny/null/size=40x30 --eye 0,2,30 --target 0,5,0 -o "$work/c.png"
+is 'render takes a cell and a camera, and says what it wrote on stderr' $rc -eq 0 -a -s "$work/c.png" -a ! -s "$work/out" -a -s "$work/err"
+try reference --scene tiny --size 40x30 --effects none --samples 16 --standard-error 0 -o "$work/r.exr" -q
+is 'reference writes an EXR' $rc -eq 0 -a -s "$work/r.exr"
+if command -v oiiotool >/dev/null; then
+  is 'with the variance of each channel' "$(oiiotool --info -v "$work/r.exr" | grep -c 'variance.R')" -ge 1
+fi
+prints 'diff compares them' 'rmse' diff "$work/a.exr" "$work/r.exr"
+prints 'the cache can be trimmed' 'MB removed' cache trim 1k
+prints 'the cache can be cleared' 'MB removed' cache clear
+is 'a cleared cache is empty' -z "$(ls -A "$work/cache" 2>/dev/null)"
+
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ]
