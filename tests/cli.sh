@@ -216,7 +216,7 @@ children=$(pgrep -P $pid)
 is 'kill -9 loses no finished repetition' "$(lines "$dir/cells.jsonl")" -ge "$before"
 sleep 0.3
 alive=0
-for child in $children; do grep -qs '^State:[[:space:]]*[^ZX]' "/proc/$child/status" && alive=1; done
+for child in $children; do grep -qs '^State:[[:space:]]*[RSDTt]' "/proc/$child/status" && alive=1; done
 is 'kill -9 leaves no cell running' $alive -eq 0
 printf '{"version":1,"cell":"half a li' >>"$dir/cells.jsonl"
 finish 'after kill -9 and a torn line --resume does the rest' "$dir"

@@ -3,6 +3,7 @@
 #include "cli/cli.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,8 +15,12 @@ static void wait_passively(char **argv)
 {
     if (getenv("OMP_WAIT_POLICY"))
         return;
-    setenv("OMP_WAIT_POLICY", "passive", 1);
-    execv("/proc/self/exe", argv);
+    char program[PATH_MAX];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length < 0 || setenv("OMP_WAIT_POLICY", "passive", 1))
+        return;
+    program[length] = 0;
+    execv(program, argv);
 }
 
 static int overview(FILE *out)

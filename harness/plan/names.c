@@ -135,8 +135,9 @@ enum status cell_complete(struct arena *arena, struct cell *cell,
 static bool part_set(struct cell *cell, const char *part, enum status *status, struct error *error)
 {
     const char *value = strchr(part, '=');
-    if (!value++)
+    if (!value)
         return false;
+    value++;
     if (!strncmp(part, "trees=", 6))
         *status = trees_parse(value, &cell->trees, error);
     else if (!strncmp(part, "lod=", 4))
