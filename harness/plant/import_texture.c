@@ -97,16 +97,25 @@ static int alpha_channel(const struct image *image)
     return channels == 2 || channels == 4 ? channels - 1 : -1;
 }
 
-/* Alpha from the opacity picture's alpha, or its grey; else from the colour picture's alpha;
- * else 1. */
+/* The channel that tells how opaque a picture is: its alpha where it has some, else, of an opacity
+ * map, its grey; -1: none. */
+static int veil_channel(const struct image *image, bool is_opacity_map)
+{
+    int alpha = alpha_channel(image);
+    size_t texels = (size_t)image->width_px * (size_t)image->height_px;
+    for (size_t i = 0; alpha >= 0 && i < texels; i++)
+        if (image->values[i * (size_t)image->channels_count + (size_t)alpha] < 1)
+            return alpha;
+    return is_opacity_map ? 0 : -1;
+}
+
+/* color or opacity may be NULL, not both; the picture is turned upside down. */
 static void fill(struct texture *texture, const struct image *color, const struct image *opacity,
                  float cutoff)
 {
     int width = texture->width_px, height = texture->height_px;
     const struct image *veil = opacity ? opacity : color;
-    int veil_channel = alpha_channel(veil);
-    if (opacity && veil_channel < 0)
-        veil_channel = 0;
+    int channel = veil_channel(veil, opacity != NULL);
     int step = color && color->channels_count >= 3 ? 1 : 0;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
@@ -115,8 +124,8 @@ static void fill(struct texture *texture, const struct image *color, const struc
             for (int k = 0; k < 3; k++)
                 to[k] = color ? sample(color, x, y, width, height, k * step) : 1;
             to[3] = 1;
-            if (veil_channel >= 0)
-                to[3] = clamp01(sample(veil, x, y, width, height, veil_channel) * 0.5f / cutoff);
+            if (channel >= 0)
+                to[3] = clamp01(sample(veil, x, y, width, height, channel) * 0.5f / cutoff);
         }
 }
 

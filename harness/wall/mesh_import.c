@@ -2,6 +2,7 @@
 #include "wall/mesh_import.h"
 
 #include "base/color.h"
+#include "wall/mesh_import_ply.h"
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/cimport.h>
@@ -33,28 +34,6 @@ static bool ends_with(const char *path, const char *ending)
 {
     size_t n = strlen(path), m = strlen(ending);
     return n >= m && strcasecmp(path + n - m, ending) == 0;
-}
-
-/* OBJ has colours only by a custom that stores encoded ones; PLY has them as integers (encoded) or
- * floats. */
-static bool colors_are_encoded(const char *path)
-{
-    if (ends_with(path, ".obj"))
-        return true;
-    FILE *file = ends_with(path, ".ply") ? fopen(path, "rb") : NULL;
-    if (!file)
-        return false;
-    char line[256], type[64];
-    bool encoded = false;
-    for (int i = 0; i < 200 && fgets(line, sizeof line, file); i++) {
-        if (strncmp(line, "end_header", 10) == 0)
-            break;
-        char name[64];
-        if (sscanf(line, "property %63s %63s", type, name) == 2 && strcmp(name, "red") == 0)
-            encoded = strncmp(type, "float", 5) != 0 && strcmp(type, "double") != 0;
-    }
-    fclose(file);
-    return encoded;
 }
 
 static const struct import_texture *texture(struct import *import, const struct aiMaterial *from,
@@ -300,6 +279,10 @@ static enum status read_scene(struct import *import, size_t triangles_limit)
 enum status mesh_import(struct arena *arena, const char *path, size_t triangles_limit,
                         struct import_soup **soup, struct error *error)
 {
+    /* OBJ has colours only by a custom that stores encoded ones; glTF's are linear. */
+    bool colors_encoded = ends_with(path, ".obj");
+    if (ends_with(path, ".ply") && ply_check(path, &colors_encoded, error) != STATUS_OK)
+        return STATUS_INVALID;
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     aiSetImportPropertyInteger(properties, AI_CONFIG_PP_SBP_REMOVE,
                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -310,7 +293,7 @@ enum status mesh_import(struct arena *arena, const char *path, size_t triangles_
         return error_set(error, STATUS_INVALID, "%s: %s", path, aiGetErrorString());
     struct import import = {.arena = arena, .path = path, .scene = scene, .error = error};
     import.soup = *soup = ARENA_NEW(arena, struct import_soup);
-    import.colors_encoded = colors_are_encoded(path);
+    import.colors_encoded = colors_encoded;
     enum status status = STATUS_OK;
     if (scene->mNumMeshes == 0 || !scene->mRootNode)
         status = error_set(error, STATUS_INVALID, "%s: holds no triangles", path);
