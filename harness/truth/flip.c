@@ -189,57 +189,75 @@ static void magnitude(const double *x, const double *y, struct extent extent, fl
         out[i] = (float)sqrt(x[i] * x[i] + y[i] * y[i]);
 }
 
-/* Length of the gradient of luminance under one derivative's weights. */
-static void derivative(struct arena *scratch, const double *luminance, struct extent extent,
-                       int radius, const double *smooth, const double *weights, float *out)
+/* Planes that are needed on the way. */
+struct work {
+    double *opponent[3], *filtered[3], *rows, *more;
+};
+
+static struct work work_planes(struct arena *arena, struct extent extent)
 {
-    struct kernel gaussian = {radius, smooth, BORDER_REPLICATE};
-    struct kernel change = {radius, weights, BORDER_REPLICATE};
+    struct work work;
     size_t count = extent_count(extent);
-    double *rows = ARENA_ARRAY(scratch, double, count);
-    double *x = ARENA_ARRAY(scratch, double, count), *y = ARENA_ARRAY(scratch, double, count);
-    filter_rows(luminance, extent, &change, rows);
-    filter_columns(rows, extent, &gaussian, x);
-    filter_rows(luminance, extent, &gaussian, rows);
-    filter_columns(rows, extent, &change, y);
-    magnitude(x, y, extent, out);
+    for (int c = 0; c < 3; c++) {
+        work.opponent[c] = ARENA_ARRAY(arena, double, count);
+        work.filtered[c] = ARENA_ARRAY(arena, double, count);
+    }
+    work.rows = ARENA_ARRAY(arena, double, count);
+    work.more = ARENA_ARRAY(arena, double, count);
+    return work;
 }
 
-struct flip_features flip_features(struct arena *arena, const struct rgb_planes *picture,
-                                   struct extent extent)
+enum { WEIGHTS = 2 * SPATIAL_RADIUS_MAX + 1 };
+
+/* What the eye resolves of the colours, section 4.1.1. */
+static void color_planes(const struct work *work, struct extent extent, float *const lab[3])
 {
-    enum { WEIGHTS = 2 * SPATIAL_RADIUS_MAX + 1 };
     int radius = (int)ceil(3 * sqrt(WIDEST_B / (2 * PI * PI)) * PIXELS_PER_DEGREE);
     double y_weights[WEIGHTS], cx_weights[WEIGHTS], cz_weights[2][WEIGHTS];
     sensitivity_weights(achromatic, radius, y_weights);
     sensitivity_weights(red_green, radius, cx_weights);
     blue_yellow_weights(radius, cz_weights[0], cz_weights[1]);
+    blur(work->opponent[0], extent, radius, y_weights, work->rows, work->filtered[0]);
+    blur(work->opponent[1], extent, radius, cx_weights, work->rows, work->filtered[1]);
+    blur(work->opponent[2], extent, radius, cz_weights[0], work->rows, work->filtered[2]);
+    blur(work->opponent[2], extent, radius, cz_weights[1], work->rows, work->more);
+    filtered_lab(work->filtered, work->more, extent, lab);
+}
+
+/* Lengths of the first and second derivatives of luminance, section 4.2.1. Overwrites the filtered
+ * planes. */
+static void feature_planes(const struct work *work, struct extent extent, float *edges,
+                           float *points)
+{
     double sigma_px = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
-    int feature_radius = (int)ceil(3 * sigma_px);
+    int radius = (int)ceil(3 * sigma_px);
     double smooth[WEIGHTS], first[WEIGHTS], second[WEIGHTS];
-    feature_weights(feature_radius, sigma_px, smooth, first, second);
-
-    struct arena *scratch = arena_create(0);
-    size_t count = extent_count(extent);
-    double *opponent[3], *filtered[3], *rows = ARENA_ARRAY(scratch, double, count);
-    double *more = ARENA_ARRAY(scratch, double, count);
-    for (int c = 0; c < 3; c++) {
-        opponent[c] = ARENA_ARRAY(scratch, double, count);
-        filtered[c] = ARENA_ARRAY(scratch, double, count);
+    feature_weights(radius, sigma_px, smooth, first, second);
+    struct kernel gaussian = {radius, smooth, BORDER_REPLICATE};
+    struct kernel changes[2] = {{radius, first, BORDER_REPLICATE},
+                                {radius, second, BORDER_REPLICATE}};
+    double *smoothed = work->more, *along_x = work->filtered[0], *along_y = work->filtered[1];
+    filter_rows(work->opponent[0], extent, &gaussian, smoothed);
+    for (int k = 0; k < 2; k++) {
+        filter_rows(work->opponent[0], extent, &changes[k], work->rows);
+        filter_columns(work->rows, extent, &gaussian, along_x);
+        filter_columns(smoothed, extent, &changes[k], along_y);
+        magnitude(along_x, along_y, extent, k ? points : edges);
     }
-    struct rgb_planes lab = rgb_planes_create(arena, extent);
-    opponent_planes(picture, extent, opponent);
-    blur(opponent[0], extent, radius, y_weights, rows, filtered[0]);
-    blur(opponent[1], extent, radius, cx_weights, rows, filtered[1]);
-    blur(opponent[2], extent, radius, cz_weights[0], rows, filtered[2]);
-    blur(opponent[2], extent, radius, cz_weights[1], rows, more);
-    filtered_lab(filtered, more, extent, lab.channels);
+}
 
+struct flip_features flip_features(struct arena *arena, const struct rgb_planes *picture,
+                                   struct extent extent)
+{
+    struct arena *scratch = arena_create(0);
+    struct work work = work_planes(scratch, extent);
+    struct rgb_planes lab = rgb_planes_create(arena, extent);
     struct flip_features features = {{lab.channels[0], lab.channels[1], lab.channels[2]},
-                                     ARENA_ARRAY(arena, float, count),
-                                     ARENA_ARRAY(arena, float, count)};
-    derivative(scratch, opponent[0], extent, feature_radius, smooth, first, features.edges);
-    derivative(scratch, opponent[0], extent, feature_radius, smooth, second, features.points);
+                                     ARENA_ARRAY(arena, float, extent_count(extent)),
+                                     ARENA_ARRAY(arena, float, extent_count(extent))};
+    opponent_planes(picture, extent, work.opponent);
+    color_planes(&work, extent, lab.channels);
+    feature_planes(&work, extent, features.edges, features.points);
     arena_destroy(scratch);
     return features;
 }

@@ -78,9 +78,10 @@ void hdr_flip_expose(const struct rgb_planes *picture, struct extent extent, dou
         float *mapped = out->channels[c];
 #pragma omp parallel for
         for (size_t i = 0; i < extent_count(extent); i++) {
-            double x = fmin(fmax((double)in[i], 0) * scale, 1e9);
+            double x = in[i] > 0 ? (double)in[i] * scale : 0;
+            x = x < 1e9 ? x : 1e9;
             double value = (aces_a * x * x + aces_b * x) / (aces_c * x * x + aces_d * x + aces_e);
-            mapped[i] = (float)fmin(value, 1);
+            mapped[i] = value < 1 ? (float)value : 1.0f;
         }
     }
 }
