@@ -7,6 +7,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 here=$(cd "$(dirname "$0")" && pwd)
 export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
+export OMP_WAIT_POLICY=passive # threads that spin take the cores of whatever runs beside
 export UBSAN_OPTIONS="print_stacktrace=1"
 export TREELINE_DATA="${TREELINE_DATA:-$(dirname "$here")}"
 for program in "$@"; do

@@ -145,6 +145,12 @@ static void test_frame__absurd_headers_with_a_right_hash_are_refused(void **stat
         assert_int_equal(forged(sizes[k][0], sizes[k][1], 0, text), STATUS_INVALID);
         assert_non_null(strstr(text, " is outside 1..32768 px a side, 33554432 px in all"));
     }
+    unsigned char padded[20 + 16 + 4 + 8] = "TLFRAME1";
+    padded[8] = padded[12] = 1;
+    uint64_t hash = hash_bytes(0, padded, 40);
+    memcpy(padded + 40, &hash, 8);
+    assert_int_equal(unpack_error(padded, sizeof padded, text), STATUS_INVALID);
+    assert_string_equal(text, "x.frame: 48 bytes; a frame of 1 x 1 has 44 (cut off, or padded)");
     assert_int_equal(forged(1, 1, 2, text), STATUS_INVALID);
     assert_string_equal(text, "x.frame: flags 2 are not 0 or 1");
     assert_int_equal(forged(1, 1, 1, text), STATUS_INVALID);        /* variance is missing */

@@ -288,7 +288,8 @@ static void test_image__a_file_cut_off_is_refused(void **state)
         assert_int_equal(file_read(arena, path, 0, &data, &size, NULL), STATUS_OK);
         for (int part = 1; part < 8; part++) {
             assert_int_equal(file_write(path, data, size * (size_t)part / 8, NULL), STATUS_OK);
-            expect_read_error(path, STATUS_INVALID, "no picture can be read");
+            expect_read_error(path, STATUS_INVALID,
+                              k == 0 ? "the PNG is cut off" : "no picture can be read");
         }
         unlink(path);
     }
