@@ -2,17 +2,18 @@
  *
  * Ebeida, Mitchell, Patney, Davidson, Owens 2012, A Simple Algorithm for Maximal Poisson-Disk
  * Sampling in High Dimensions, Computer Graphics Forum 31(2), doi:10.1111/j.1467-8659.2012.03059.x.
- * Base cells have a diagonal of one radius and hold one point at most; a dart is thrown into an
- * active cell taken at random; after a pass the active cells are quartered, and quarters that lie
- * within a disc are dropped. Darts are uniform over the active cells, so the points are evenly
- * spread whenever the wanted number stops the game. */
+ * Base cells have a diagonal of one radius and hold one point at most. Darts are thrown anywhere
+ * first; when that no longer pays, into an active cell taken at random, and after each pass the
+ * active cells are quartered and quarters that lie within a disc are dropped. Darts are uniform
+ * over what is still free, so the points are evenly spread whenever the wanted number stops the
+ * game. */
 #include "scene/place.h"
 
 #include "scene/place_random.h"
 
 #include <string.h>
 
-enum { LEVELS_MAX = 16 };
+enum { LEVELS_MAX = 16, PASSES_ANYWHERE = 4 };
 static const float EMPTY = 1e30f; /* far from everything */
 
 struct cell_at {
@@ -36,17 +37,14 @@ static void neighbours_of(const struct discs *discs, uint32_t x, uint32_t z, int
     range[3] = (int64_t)z + 2 < discs->cells_side ? (int64_t)z + 2 : discs->cells_side - 1;
 }
 
-/* Throws a dart into cell `at` of a level; true when it sticks. */
-static bool dart_throw(struct discs *discs, struct cell_at at, int level)
+/* A dart at a point of a base cell, rounded first, so that the distances hold for the floats that
+ * an instance keeps; true when it sticks. */
+static bool dart_sticks(struct discs *discs, double point_x_m, double point_z_m, uint32_t base_x,
+                        uint32_t base_z)
 {
-    double side_m = discs->cell_m / (double)(1u << level);
-    double inside_x = random_double(&discs->random), inside_z = random_double(&discs->random);
-    /* Rounded first: the distances hold for the floats that an instance keeps. */
-    float x_m = (float)((at.x + inside_x) * side_m - discs->half_m);
-    float z_m = (float)((at.z + inside_z) * side_m - discs->half_m);
+    float x_m = (float)point_x_m, z_m = (float)point_z_m;
     if ((double)x_m * x_m + (double)z_m * z_m < discs->clearing2_m2)
         return false;
-    uint32_t base_x = at.x >> level, base_z = at.z >> level;
     int64_t range[4];
     neighbours_of(discs, base_x, base_z, range);
     for (int64_t j = range[2]; j <= range[3]; j++)
@@ -61,6 +59,41 @@ static bool dart_throw(struct discs *discs, struct cell_at at, int level)
     slot[1] = z_m;
     discs->count++;
     return true;
+}
+
+/* A dart into an active cell of a level. */
+static bool dart_throw(struct discs *discs, struct cell_at at, int level)
+{
+    double side_m = discs->cell_m / (double)(1u << level);
+    double inside_x = random_double(&discs->random), inside_z = random_double(&discs->random);
+    return dart_sticks(discs, (at.x + inside_x) * side_m - discs->half_m,
+                       (at.z + inside_z) * side_m - discs->half_m, at.x >> level, at.z >> level);
+}
+
+/* Darts anywhere in the square, as many as there are cells, or until the wanted number sticks. They
+ * are drawn some ahead, so that the memory around one is fetched while others are judged. */
+static void pass_anywhere(struct discs *discs)
+{
+    enum { AHEAD = 32 };
+    double last = (double)(discs->cells_side - 1);
+    int64_t batches = discs->cells_side * discs->cells_side / AHEAD + 1;
+    for (int64_t b = 0; b < batches && discs->count < discs->wanted; b++) {
+        double darts[AHEAD][2];
+        struct cell_at bases[AHEAD];
+        for (int k = 0; k < AHEAD; k++) {
+            for (int a = 0; a < 2; a++)
+                darts[k][a] = random_double(&discs->random) * (double)discs->cells_side;
+            bases[k].x = (uint32_t)fmin(darts[k][0], last);
+            bases[k].z = (uint32_t)fmin(darts[k][1], last);
+            int64_t range[4];
+            neighbours_of(discs, bases[k].x, bases[k].z, range);
+            for (int64_t j = range[2]; j <= range[3]; j++)
+                __builtin_prefetch(discs->points_m[j * discs->cells_side + range[0]]);
+        }
+        for (int k = 0; k < AHEAD && discs->count < discs->wanted; k++)
+            dart_sticks(discs, darts[k][0] * discs->cell_m - discs->half_m,
+                        darts[k][1] * discs->cell_m - discs->half_m, bases[k].x, bases[k].z);
+    }
 }
 
 static bool base_is_taken(const struct discs *discs, struct cell_at at, int level)
@@ -126,6 +159,19 @@ static size_t pass_quarter(const struct discs *discs, const struct cell_at *acti
     return kept;
 }
 
+/* The base cells that a point may still hit. */
+static size_t active_list(const struct discs *discs, struct arena *arena, struct cell_at **active)
+{
+    size_t kept = 0, side = (size_t)discs->cells_side;
+    *active = ARENA_ARRAY(arena, struct cell_at, side * side);
+    for (size_t k = 0; k < side * side; k++) {
+        struct cell_at at = {(uint32_t)(k % side), (uint32_t)(k / side)};
+        if (!base_is_taken(discs, at, 0) && !cell_is_covered(discs, at, 0))
+            (*active)[kept++] = at;
+    }
+    return kept;
+}
+
 /* An arena of its own, since the lists are many times the points. */
 static size_t discs_fill(struct discs *discs, double (*points_m)[2])
 {
@@ -134,11 +180,10 @@ static size_t discs_fill(struct discs *discs, double (*points_m)[2])
     discs->points_m = arena_alloc(scratch, cells, sizeof *discs->points_m);
     for (size_t k = 0; k < cells; k++)
         discs->points_m[k][0] = discs->points_m[k][1] = EMPTY;
-    struct cell_at *active = ARENA_ARRAY(scratch, struct cell_at, cells);
-    for (size_t k = 0; k < cells; k++)
-        active[k] = (struct cell_at){(uint32_t)(k % (size_t)discs->cells_side),
-                                     (uint32_t)(k / (size_t)discs->cells_side)};
-    size_t active_count = cells;
+    for (int pass = 0; pass < PASSES_ANYWHERE && discs->count < discs->wanted; pass++)
+        pass_anywhere(discs);
+    struct cell_at *active = NULL;
+    size_t active_count = discs->count < discs->wanted ? active_list(discs, scratch, &active) : 0;
     for (int level = 0; level < LEVELS_MAX && active_count > 0; level++) {
         active_count = pass_throw(discs, active, active_count, level);
         if (active_count > POISSON_CELLS_MAX)
