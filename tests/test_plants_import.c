@@ -606,6 +606,10 @@ static void test_files__that_are_torn_are_refused(void **state)
                           "property float y\nproperty float z\nelement face 1\n"
                           "property list uchar int vertex_indices\nend_header\n"
                           "0 0 0\n1 0 0\n0 1 0\n");
+    put_text("crash.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 1\n"
+                          "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+                          "property list uchar int vertex_indices\nend_header\n"
+                          "0123456789ab\3");
     put_text("torn.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
     put_text("noise.glb", "glTF\1\2\3\4 this is not one");
     put_text("lost.gltf", gltf(arena, "\"byteLength\":140,\"uri\":\"lost.bin\"",
@@ -614,6 +618,7 @@ static void test_files__that_are_torn_are_refused(void **state)
     refused("torn.gltf", NULL, STATUS_INVALID, "torn.gltf: ");
     refused("torn.ply", NULL, STATUS_INVALID, "torn.ply: ");
     refused("short.ply", NULL, STATUS_INVALID, "ends after 3 of 4 elements");
+    refused("crash.ply", NULL, STATUS_INVALID, "crash.ply: "); /* assimp 5.2 reads past its end */
     refused("torn.obj", NULL, STATUS_INVALID, "torn.obj: ");
     refused("noise.glb", NULL, STATUS_INVALID, "noise.glb: ");
     refused("lost.gltf", NULL, STATUS_INVALID, "lost.bin");
