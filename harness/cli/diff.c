@@ -56,7 +56,8 @@ struct outcome {
 
 static double metric_of(const struct metrics *metrics, const struct metric_info *info)
 {
-    return *(const double *)((const char *)metrics + info->offset);
+    const void *field = (const char *)metrics + info->offset;
+    return *(const double *)field;
 }
 
 static void forget(struct metrics *metrics)

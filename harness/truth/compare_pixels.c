@@ -48,6 +48,22 @@ static struct sums row_sums(const struct frame *test, const struct frame *refere
     return sums;
 }
 
+static void add_sums(const struct sums *row, struct sums *total)
+{
+    total->squared += row->squared;
+    total->absolute += row->absolute;
+    total->relative += row->relative;
+    for (int c = 0; c < 3; c++)
+        total->color[c] += row->color[c];
+    total->cover_absolute += row->cover_absolute;
+    total->cover_signed += row->cover_signed;
+    total->variance += row->variance;
+    total->deviation += row->deviation;
+    total->relative_variance += row->relative_variance;
+    total->cover_deviation += row->cover_deviation;
+    total->cover_variance += row->cover_variance;
+}
+
 static struct sums picture_sums(const struct frame *test, const struct frame *reference)
 {
     struct arena *scratch = arena_create(0);
@@ -56,10 +72,8 @@ static struct sums picture_sums(const struct frame *test, const struct frame *re
     for (int y = 0; y < test->height_px; y++)
         rows[y] = row_sums(test, reference, y);
     struct sums total = {0};
-    double *to = (double *)&total;
     for (int y = 0; y < test->height_px; y++)
-        for (size_t k = 0; k < sizeof total / sizeof *to; k++)
-            to[k] += ((const double *)&rows[y])[k];
+        add_sums(&rows[y], &total);
     arena_destroy(scratch);
     return total;
 }
