@@ -1,5 +1,4 @@
-/* Imported plants: small OBJ, PLY, glTF and GLB files are written here and read back; bad ones are
- * refused. */
+/* Imported plants: small OBJ, PLY, glTF and GLB files are written and read back; bad ones refused. */
 #include "testing.h"
 
 #include "plant_files.h"
@@ -15,8 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A trunk (a box of 0.2 x 2 x 0.2 standing at x = 5) and three leaves: two quads and one triangle.
- */
+/* A trunk (a box of 0.2 x 2 x 0.2 that stands at x = 5) and leaves: two quads and one triangle. */
 static const char tree_obj[] = "mtllib tree.mtl\n"
                                "v 4.9 1 -0.1\nv 5.1 1 -0.1\nv 5.1 1 0.1\nv 4.9 1 0.1\n"
                                "v 4.9 3 -0.1\nv 5.1 3 -0.1\nv 5.1 3 0.1\nv 4.9 3 0.1\n"
