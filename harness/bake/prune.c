@@ -39,6 +39,15 @@ static void cross_edges(const float *a, const float *b, const float *c, double n
         n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
 }
 
+static double triangle_area(const struct mesh *mesh, uint32_t triangle)
+{
+    const uint32_t *corners = mesh->triangles[triangle];
+    double n[3];
+    cross_edges(mesh->positions[corners[0]], mesh->positions[corners[1]],
+                mesh->positions[corners[2]], n);
+    return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
 /* Bilinear, wrapping. */
 static void texture_at(const struct texture *texture, float u, float v, float rgba[4])
 {
@@ -86,20 +95,20 @@ static void patch_sample(const struct mesh *mesh, const uint32_t *corners,
     }
 }
 
-static struct patch patch_of(const struct mesh *mesh, uint32_t triangle,
+static struct patch patch_of(struct pruner *pruner, uint32_t triangle,
                              const struct material *material)
 {
+    const struct mesh *mesh = pruner->mesh;
     const uint32_t *corners = mesh->triangles[triangle];
-    double n[3];
-    cross_edges(mesh->positions[corners[0]], mesh->positions[corners[1]],
-                mesh->positions[corners[2]], n);
-    struct patch patch = {.area = 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])};
+    struct patch patch = {.area = triangle_area(mesh, triangle)};
     bool textured = material->texture && mesh->uvs;
     int samples = textured ? TEXTURE_SAMPLES : 1;
+    float start[2] = {random_float(&pruner->random), random_float(&pruner->random)};
     for (int k = 0; k < samples; k++) {
-        /* the centre, or a plastic-number lattice folded into the triangle (Roberts 2018) */
-        float p = textured ? fmodf(0.5f + 0.7548777f * (float)k, 1) : 1.0f / 3;
-        float q = textured ? fmodf(0.5f + 0.5698403f * (float)k, 1) : 1.0f / 3;
+        /* the centre, or a plastic-number lattice (Roberts 2018) from a random start, folded into
+         * the triangle */
+        float p = textured ? fmodf(start[0] + 0.7548777f * (float)k, 1) : 1.0f / 3;
+        float q = textured ? fmodf(start[1] + 0.5698403f * (float)k, 1) : 1.0f / 3;
         if (p + q > 1) {
             p = 1 - p;
             q = 1 - q;
@@ -128,7 +137,7 @@ static void add_leaf(struct pruner *pruner, uint32_t begin, uint32_t end,
     uint32_t largest = begin;
     double largest_area = 0;
     for (uint32_t t = begin; t < end; t++) {
-        struct patch patch = patch_of(mesh, t, material);
+        struct patch patch = patch_of(pruner, t, material);
         sum.opaque += patch.opaque;
         for (int i = 0; i < 3; i++) {
             sum.albedo[i] += patch.albedo[i];
@@ -229,9 +238,9 @@ static double bark_area(const struct mesh *mesh)
     double area = 0;
     for (size_t p = 0; p < mesh->parts_count; p++) {
         const struct mesh_part *part = &mesh->parts[p];
-        const struct material *material = &mesh->materials[part->material];
-        for (uint32_t t = 0; material->kind == MATERIAL_BARK && t < part->triangles_count; t++)
-            area += patch_of(mesh, part->first_triangle + t, material).area;
+        bool bark = mesh->materials[part->material].kind == MATERIAL_BARK;
+        for (uint32_t t = 0; bark && t < part->triangles_count; t++)
+            area += triangle_area(mesh, part->first_triangle + t);
     }
     return area;
 }
@@ -247,7 +256,7 @@ static void add_bark(struct pruner *pruner, size_t samples, double step, double 
         const struct mesh_part *part = &mesh->parts[p];
         const struct material *material = &mesh->materials[part->material];
         for (uint32_t t = 0; material->kind == MATERIAL_BARK && t < part->triangles_count; t++) {
-            area += patch_of(mesh, part->first_triangle + t, material).area;
+            area += triangle_area(mesh, part->first_triangle + t);
             for (; next < area && added < samples; next += step, added++)
                 add_sample(pruner, part->first_triangle + t, material, element);
         }
