@@ -412,7 +412,7 @@ static void test_polygons__every_level_covers_what_all_triangles_cover(void **st
     arena_destroy(arena);
 }
 
-static void test_polygons__a_far_forest_costs_two_triangles_a_tree_and_keeps_its_cover(void **state)
+static void test_polygons__a_far_tree_costs_two_triangles_and_keeps_its_cover(void **state)
 {
     (void)state;
     struct arena *arena = arena_create(0);
@@ -591,8 +591,7 @@ int main(void)
         cmocka_unit_test(test_polygons__sixteen_samples_measure_a_quads_area),
         cmocka_unit_test(test_polygons__pruned_elements_keep_the_plants_area),
         cmocka_unit_test(test_polygons__every_level_covers_what_all_triangles_cover),
-        cmocka_unit_test(
-            test_polygons__a_far_forest_costs_two_triangles_a_tree_and_keeps_its_cover),
+        cmocka_unit_test(test_polygons__a_far_tree_costs_two_triangles_and_keeps_its_cover),
         cmocka_unit_test(test_polygons__leaves_shrink_away_without_a_jump),
         cmocka_unit_test(test_polygons__the_back_ends_draw_the_same_bytes),
         cmocka_unit_test(test_polygons__only_closed_bark_that_faces_outward_is_culled),
