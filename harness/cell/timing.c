@@ -12,7 +12,8 @@
 #include <sys/resource.h>
 
 /* The first frame and those until the time stops falling, all at the path's start; then one in the
- * middle and one at the end, so that nothing is met for the first time while the clock runs.
+ * middle and one at the end, so that nothing is met for the first time while the clock runs. After
+ * a first frame of four times the measuring time or more there is nothing to wait for.
  * frame_seconds: what a frame takes about. */
 static enum status warm_up(struct stage *stage, double *frame_seconds)
 {
@@ -25,7 +26,9 @@ static enum status warm_up(struct stage *stage, double *frame_seconds)
     enum status status = stage_draw(stage, &view, &result->first_frame_seconds);
     if (!status)
         status = stage_check(stage, "the first frame");
-    if (status)
+    result->warmup_frames = 1;
+    *frame_seconds = result->first_frame_seconds;
+    if (status || *frame_seconds >= 4 * limit)
         return status;
     stage_announce(stage, "warm-up");
     while (!status && !warmup_done(seconds, count, limit))
@@ -134,29 +137,40 @@ static struct view sun_turned(const struct view *view, double angle_rad)
     return turned;
 }
 
-enum status stage_relight(struct stage *stage)
+/* The sun moved, back, and a frame without any change of light; three times. */
+static enum status relight_pairs(struct stage *stage, const struct view *view)
 {
     enum { PAIRS = 3 };
     double plain[PAIRS], relit[PAIRS];
+    enum status status = STATUS_OK;
+    for (int i = 0; i < PAIRS && !status; i++) {
+        struct view turned = sun_turned(view, 0.35 * (i + 1));
+        status = stage_draw(stage, &turned, &relit[i]);
+        if (!status)
+            status = stage_draw(stage, view, NULL);
+        if (!status)
+            status = stage_draw(stage, view, &plain[i]);
+    }
+    if (!status)
+        stage->result->relight_seconds = stats_median(relit, PAIRS) - stats_median(plain, PAIRS);
+    return status;
+}
+
+enum status stage_relight(struct stage *stage)
+{
+    struct result *result = stage->result;
     struct view view;
+    enum status status = STATUS_OK;
     stage_announce(stage, "the sun moved");
     view_at(stage->scene, 0, &view);
-    /* Slow methods are asked once: the answer is coarse but the time is not doubled. */
-    int pairs =
-        stage->result->frame_seconds[0] * 2 * PAIRS > stage->plan->frame_seconds ? 1 : PAIRS;
-    enum status status = STATUS_OK;
-    for (int i = 0; i < pairs && !status; i++) {
-        struct view turned = sun_turned(&view, 0.35 * (i + 1));
-        status = stage_draw(stage, &turned, &relit[i]);
-        /* Back to the path's sun, then a frame without any change of light. */
-        if (!status)
-            status = stage_draw(stage, &view, NULL);
-        if (!status)
-            status = stage_draw(stage, &view, &plain[i]);
+    if (result->frame_seconds[0] * 9 < stage->plan->frame_seconds) {
+        status = relight_pairs(stage, &view);
+    } else if (!result->repetition) {
+        /* A slow method is asked once a cell, against its first timed frame: coarse, but short. */
+        struct view turned = sun_turned(&view, 0.35);
+        double relit = 0;
+        status = stage_draw(stage, &turned, &relit);
+        result->relight_seconds = relit - result->frame_seconds[0];
     }
-    if (status)
-        return status;
-    stage->result->relight_seconds =
-        stats_median(relit, (size_t)pairs) - stats_median(plain, (size_t)pairs);
-    return stage_check(stage, "the sun moved");
+    return status ? status : stage_check(stage, "the sun moved");
 }

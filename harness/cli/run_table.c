@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Means over the compared views, same effects. */
@@ -83,6 +84,22 @@ static void rows_json(struct arena *arena, const struct summary *rows, size_t co
     printf("%s\n", json_out_text(out));
 }
 
+/* By scene, tree count and time, what failed last. */
+static int row_order(const void *a, const void *b)
+{
+    const struct summary *x = a, *y = b;
+    const struct cell *p = &x->first->cell, *q = &y->first->cell;
+    int scene = strcmp(p->scene, q->scene);
+    if (scene)
+        return scene;
+    if (p->trees != q->trees)
+        return p->trees < q->trees ? -1 : 1;
+    double s = x->frame_seconds.value, t = y->frame_seconds.value;
+    if (isnan(s) || isnan(t))
+        return isnan(s) - isnan(t);
+    return (s > t) - (s < t);
+}
+
 enum status run_table(struct arena *arena, const char *folder, bool json, struct error *error)
 {
     struct run *run;
@@ -90,7 +107,8 @@ enum status run_table(struct arena *arena, const char *folder, bool json, struct
     if (status)
         return status;
     size_t count;
-    const struct summary *rows = report_summaries(arena, run, &count);
+    struct summary *rows = report_summaries(arena, run, &count);
+    qsort(rows, count, sizeof *rows, row_order);
     if (json) {
         rows_json(arena, rows, count, folder);
         return STATUS_OK;
