@@ -162,6 +162,12 @@ static void test_option__text_goes_in_and_the_canonical_text_comes_out(void **un
     assert_true(again.fast == options.fast && again.slices == options.slices &&
                 again.gain == options.gain && again.angle == options.angle &&
                 again.alpha == options.alpha);
+    options.gain = 1;
+    options.angle = 300;
+    options_print(table + 2, &options, text, sizeof text);
+    assert_string_equal(text, "gain=1,angle=300,alpha=coverage"); /* not 3e+02 */
+    options.gain = 0.3f;
+    options.angle = -1e-3;
     assert_int_equal(options_print(table, &options, small, sizeof small), needed);
     assert_int_equal(strlen(small), 7);
 }

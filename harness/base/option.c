@@ -183,7 +183,7 @@ enum status options_parse(const struct option *table, const char *text, void *va
 /* The shortest decimal that reads back as the same value. */
 static int number_print(double value, bool single, char *text, size_t size)
 {
-    for (int digits = 1; digits < 17; digits++) {
+    for (int digits = 6; digits < 17; digits++) {
         int length = snprintf(text, size, "%.*g", digits, value);
         char exact[40];
         snprintf(exact, sizeof exact, "%.*g", digits, value);

@@ -29,7 +29,9 @@ struct option {
     { #field, OPTION_TYPE(type, field), offsetof(type, field), (fallback), (minimum), (maximum), unit, doc, NULL }
 /* The field is an int that holds the index of the word; fallback is an index too. */
 #define OPTION_WORD(type, field, fallback, words, doc)                                             \
-    { #field, OPTION_CHOICE, offsetof(type, field) + 0 * sizeof(_Generic(((type *)0)->field, int: 1)), (fallback), 0, 0, "", doc, words }
+    { #field, OPTION_CHOICE,                                                                       \
+      offsetof(type, field) + 0 * sizeof(_Generic(((type *)0)->field, int: 1)),                    \
+      (fallback), 0, 0, "", doc, words }
 #define OPTION_END { NULL, OPTION_INT, 0, 0, 0, 0, NULL, NULL, NULL }
 /* clang-format on */
 
