@@ -59,6 +59,7 @@ static const char *const variant_defines[VARIANTS] = {"",
 
 struct batch {
     int variant;
+    bool bark;
     GLuint texture; /* 0: none */
     bool cull_back;
     struct detail_range levels[DETAIL_LEVELS_MAX];
@@ -81,6 +82,7 @@ struct kind {
     float area_m2;
     uint32_t elements; /* of pruning; 0: none */
     uint32_t steps_count;
+    int step_bark[STEPS_MAX]; /* the level of bark that is drawn with a step; -1: its elements */
     uint32_t step_elements[STEPS_MAX]; /* descending, each 1/sqrt(2) of the one before */
     uint32_t first_group, groups_count;
 };
@@ -129,7 +131,7 @@ struct state {
 
 /* Twigs are thinner than a pixel long before they may be left out: bark moves by this share of
  * error_px. */
-static const float BARK_SHARE = 0.125f;
+static const float BARK_SHARE = 0.125f, BARK_AREA_KEPT = 0.75f;
 
 static const int samples_of_word[] = {1, 4, 16};
 
@@ -204,6 +206,7 @@ static void upload_detail(struct workspace *workspace, struct state *state, stru
         const struct detail_batch *from = &detail->batches[b];
         struct batch *batch = &kind->batches[b];
         batch->variant = batch_variant(from);
+        batch->bark = from->kind == MATERIAL_BARK;
         batch->cull_back = from->closed;
         batch->texture = from->texture ? upload_texture(gl, from->texture) : 0;
         memcpy(batch->levels, from->levels, sizeof batch->levels);
@@ -245,6 +248,23 @@ static void upload_pruned(struct workspace *workspace, struct state *state, stru
     }
 }
 
+/* The bark of each step of pruning: the coarsest level within the error, while it keeps most of its
+ * area. */
+static void choose_bark(struct kind *kind, const struct detail *detail)
+{
+    for (uint32_t step = 0; step < kind->steps_count; step++) {
+        float per_m = sqrtf((float)kind->step_elements[step] / kind->area_m2);
+        size_t level = 0, bark = 0;
+        while (level + 1 < kind->levels_count && kind->errors_m[level + 1] * per_m <= BARK_SHARE)
+            level++;
+        for (size_t b = 0; b < kind->batches_count; b++)
+            bark += kind->batches[b].bark ? kind->batches[b].levels[level].indices_count / 3 : 0;
+        bool whole = detail->bark_area_m2[level] >= BARK_AREA_KEPT * detail->bark_area_m2[0];
+        bool use = bark > 0 && bark <= kind->step_elements[step] && whole;
+        kind->step_bark[step] = use ? (int)level : -1;
+    }
+}
+
 static enum status prepare_kind(struct workspace *workspace, struct state *state,
                                 const struct species *species, struct kind *kind)
 {
@@ -257,10 +277,12 @@ static enum status prepare_kind(struct workspace *workspace, struct state *state
     kind->bound = cull_bound_of(mesh);
     kind->half_height_m = 0.5f * (mesh->maximum_m[1] - mesh->minimum_m[1]);
     kind->radius_m = mesh->radius_m;
-    upload_detail(workspace, state, kind, detail_create(passing, mesh, simplify));
+    const struct detail *detail = detail_create(passing, mesh, simplify);
+    upload_detail(workspace, state, kind, detail);
     if (simplify)
         upload_pruned(workspace, state, passing, kind,
                       prune_create(passing, mesh, workspace->seed));
+    choose_bark(kind, detail);
     arena_destroy(passing);
     return STATUS_OK;
 }
@@ -299,8 +321,7 @@ static void prepare_instances(struct workspace *workspace, struct state *state)
         kind->groups_count = (uint32_t)kind->levels_count + kind->steps_count * RUNS;
         state->groups_count += kind->groups_count;
         calls_room += kind->batches_count + 1;
-        state->commands_room +=
-            kind->levels_count * kind->batches_count + (size_t)kind->steps_count * RUNS;
+        state->commands_room += kind->groups_count * (kind->batches_count + 1);
     }
     state->cull = cull_create(arena, scene, bounds);
     state->turns = arena_alloc(arena, count, sizeof *state->turns);
@@ -396,6 +417,8 @@ static void prune_run(const struct state *state, const struct kind *kind, uint32
     placed->turn[2] = kept;
     /* the integral of the squared size over a run whose last share, taper, shrinks linearly to 0 */
     placed->turn[3] = sqrtf((float)kind->elements / (kept * (1 - taper * 2 / 3)));
+    if (kind->step_bark[place / RUNS] >= 0)
+        placed->turn[3] = -placed->turn[3];
 }
 
 static float taper_of(const struct state *state)
@@ -446,29 +469,40 @@ static struct cull_list place_trees(struct workspace *workspace, struct state *s
     return list;
 }
 
-/* Commands of one batch (of pruning when batch is NULL) for every group that has trees. */
+/* What a batch (NULL: the pruned elements) draws for the trees of a group; nothing: a count of 0.
+ */
+static struct detail_range group_range(const struct kind *kind, const struct batch *batch,
+                                       uint32_t group)
+{
+    struct detail_range none = {0, 0};
+    uint32_t levels = (uint32_t)kind->levels_count;
+    if (group < levels)
+        return batch ? batch->levels[group] : none;
+    uint32_t step = (group - levels) / RUNS, run = (group - levels) % RUNS;
+    if (batch)
+        return batch->bark && kind->step_bark[step] >= 0 ? batch->levels[kind->step_bark[step]]
+                                                         : none;
+    return (struct detail_range){3 * (uint32_t)((uint64_t)run * kind->elements / RUNS),
+                                 3 * kind->step_elements[step]};
+}
+
+/* Commands of one batch for every group that has trees; returns their triangles. */
 static uint64_t add_commands(struct state *state, const struct kind *kind,
                              const struct batch *batch)
 {
-    uint32_t begin = batch ? 0 : (uint32_t)kind->levels_count;
-    uint32_t end = batch ? (uint32_t)kind->levels_count : kind->groups_count;
     uint64_t triangles = 0;
-    for (uint32_t g = begin; g < end; g++) {
+    for (uint32_t g = 0; g < kind->groups_count; g++) {
         uint32_t base = state->first[kind->first_group + g];
         uint32_t trees = state->first[kind->first_group + g + 1] - base;
-        struct command command = {.instances = trees, .base_instance = base};
-        if (batch) {
-            command.count = batch->levels[g].indices_count;
-            command.first_index = batch->levels[g].first_index;
-        } else {
-            uint32_t place = g - begin;
-            command.count = 3 * kind->step_elements[place / RUNS];
-            command.first_index = 3 * (uint32_t)((uint64_t)(place % RUNS) * kind->elements / RUNS);
-        }
-        if (trees == 0 || command.count == 0)
+        struct detail_range range = group_range(kind, batch, g);
+        if (trees == 0 || range.indices_count == 0)
             continue;
-        state->commands[state->commands_count++] = command;
-        triangles += (uint64_t)command.count / 3 * trees;
+        state->commands[state->commands_count++] =
+            (struct command){.count = range.indices_count,
+                             .instances = trees,
+                             .first_index = range.first_index,
+                             .base_instance = base};
+        triangles += (uint64_t)range.indices_count / 3 * trees;
     }
     return triangles;
 }

@@ -11,7 +11,7 @@ layout(location = 3) in vec2 uv;
 sample out vec2 texture_uv;
 #endif
 layout(location = 5) in vec4 place;  // foot, m; first element of the run
-layout(location = 6) in vec4 turn;   // scale cos, scale sin; elements of the run, their growth
+layout(location = 6) in vec4 turn;   // scale cos, scale sin; elements of the run, their growth (-: without bark)
 #ifdef LIT_AT_VERTICES
 centroid out vec3 radiance;
 #else
@@ -34,8 +34,10 @@ void main()
     float rank = float(gl_VertexID / 3) - place.w;
     rank += rank < 0.0 ? elements : 0.0;
     float keep = taper > 0.0 ? clamp((turn.z - rank - 0.5) / (taper * turn.z), 0.0, 1.0) : 1.0;
-    local = center + (position - center) * (turn.w * keep);
     bool leaf = normal.w > 0.5;
+    float grow = abs(turn.w);
+    keep = leaf || turn.w > 0.0 ? keep : 0.0;
+    local = center + (position - center) * (grow * keep);
 #elif defined(LEAF)
     const bool leaf = true;
 #else
@@ -49,9 +51,9 @@ void main()
     bool facing = dot(n, eye_m - world) >= 0.0;  // the same at every point of a flat triangle
     vec3 lit = leaf ? shade_leaf(albedo, n, facing) : shade_bark(albedo, n, facing);
 #ifdef PRUNED
-    // One element stands for turn.w^2: the mean of so many varies turn.w times less (Cook et al. 2007, 3.3).
+    // One element stands for grow^2: the mean of so many varies grow times less (Cook et al. 2007, 3.3).
     if (level_contrast)
-        lit = mix(leaf ? mean_leaf : mean_bark, lit, min(1.0, 1.0 / turn.w));
+        lit = mix(leaf ? mean_leaf : mean_bark, lit, min(1.0, 1.0 / grow));
 #endif
     radiance = shade_fog(lit, world);
 #else

@@ -475,6 +475,31 @@ static void test_polygons__leaves_shrink_away_without_a_jump(void **state)
         fail_msg("the picture jumps by %g px, in steps by %g px", worst[1], worst[0]);
 }
 
+static void test_polygons__a_trunk_of_two_pixels_is_solid_under_pruned_leaves(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct mesh *mesh = new_mesh(arena, 12 + 2 * 2000, 2);
+    add_trunk(mesh, 0, 0.5f, 8);
+    add_leaves(arena, mesh, 1, 2000, 2, 10, 0.05f);
+    mesh_bounds(mesh);
+    struct picture picture;
+    coverage_from(arena, mesh, 30, LOD_AUTO, "samples=16", &picture);
+    assert_true(picture.triangles < 1000); /* of 4,012: pruned */
+    double focal_px = HEIGHT / 2 / tan(0.4), width_px = focal_px / 29.5;
+    int low = (int)(HEIGHT / 2 + 3 * focal_px / 29.5),
+        high = (int)(HEIGHT / 2 - 3 * focal_px / 29.5);
+    assert_true(low - high > 8);
+    for (int row = high; row < low; row++) {
+        double sum = 0;
+        for (int column = 0; column < WIDTH; column++)
+            sum += picture.rgba[4 * (row * WIDTH + column) + 3];
+        if (fabs(sum / width_px - 1) > 0.15)
+            fail_msg("row %d: the trunk is %g px wide, not %g", row, sum, width_px);
+    }
+    arena_destroy(arena);
+}
+
 static void test_polygons__the_back_ends_draw_the_same_bytes(void **state)
 {
     (void)state;
@@ -593,6 +618,7 @@ int main(void)
         cmocka_unit_test(test_polygons__every_level_covers_what_all_triangles_cover),
         cmocka_unit_test(test_polygons__a_far_tree_costs_two_triangles_and_keeps_its_cover),
         cmocka_unit_test(test_polygons__leaves_shrink_away_without_a_jump),
+        cmocka_unit_test(test_polygons__a_trunk_of_two_pixels_is_solid_under_pruned_leaves),
         cmocka_unit_test(test_polygons__the_back_ends_draw_the_same_bytes),
         cmocka_unit_test(test_polygons__only_closed_bark_that_faces_outward_is_culled),
         cmocka_unit_test(test_polygons__bark_levels_have_fewer_triangles_and_leaves_stay),

@@ -178,6 +178,31 @@ static size_t level_triangles(const struct detail *detail, size_t level)
     return indices / 3;
 }
 
+static double level_bark_area(const struct packer *packer, size_t level)
+{
+    const struct detail *detail = packer->detail;
+    double area = 0;
+    for (size_t b = 0; b < detail->batches_count; b++) {
+        struct detail_range range = detail->batches[b].levels[level];
+        const uint32_t *corners = detail->indices + range.first_index;
+        if (detail->batches[b].kind != MATERIAL_BARK)
+            continue;
+        for (uint32_t i = 0; i + 2 < range.indices_count; i += 3) {
+            const float *p = packer->positions[corners[i]], *q = packer->positions[corners[i + 1]];
+            const float *r = packer->positions[corners[i + 2]];
+            double n2 = 0;
+            for (int axis = 0; axis < 3; axis++) {
+                int j = (axis + 1) % 3, k = (axis + 2) % 3;
+                double n = ((double)q[j] - p[j]) * ((double)r[k] - p[k]) -
+                           ((double)q[k] - p[k]) * ((double)r[j] - p[j]);
+                n2 += n * n;
+            }
+            area += 0.5 * sqrt(n2);
+        }
+    }
+    return area;
+}
+
 /* Adds a level of bark within an error; false when it saves too little to be worth its memory. */
 static bool add_level(struct packer *packer, float error_m)
 {
@@ -209,6 +234,7 @@ static bool add_level(struct packer *packer, float error_m)
     }
     detail->errors_m[level] = worst_m;
     detail->triangles_count[level] = level_triangles(detail, level);
+    detail->bark_area_m2[level] = level_bark_area(packer, level);
     detail->levels_count++;
     return true;
 }
@@ -234,6 +260,7 @@ struct detail *detail_create(struct arena *arena, const struct mesh *mesh, bool 
         pack_batch(&packer, arena, p);
     detail->levels_count = 1;
     detail->triangles_count[0] = level_triangles(detail, 0);
+    detail->bark_area_m2[0] = level_bark_area(&packer, 0);
     float extent_m = fmaxf(mesh->maximum_m[1] - mesh->minimum_m[1], 2 * mesh->radius_m);
     for (int bits = 14; bits >= 4 && simplify && detail->levels_count < DETAIL_LEVELS_MAX; bits--)
         add_level(&packer, ldexpf(extent_m, -bits));

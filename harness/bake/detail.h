@@ -38,6 +38,7 @@ struct detail {
     size_t levels_count;               /* level 0: every triangle */
     float errors_m[DETAIL_LEVELS_MAX]; /* how far the bark's surface may have moved */
     size_t triangles_count[DETAIL_LEVELS_MAX];
+    double bark_area_m2[DETAIL_LEVELS_MAX]; /* what collapsed twigs take away */
 };
 
 /* simplify: false makes level 0 alone. The arena is best a passing one: it also holds what was
