@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Counted up whenever a picture would change. */
-#define TRACER_VERSION 2
+#define TRACER_VERSION 3
 #define THREADS_LIMIT 1024
 
 static uint32_t power_of_two(int count)
