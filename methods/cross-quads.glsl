@@ -40,5 +40,5 @@ void main()
     vec2 st = corner_of(low, high, corner);
     vec3 own = st.x * pic.right_s.xyz + st.y * pic.up_t.xyz;
     set_picture(0, t, p, index, st, 1.0);
-    set_corner(t, p, own, 0.0, level, uint(number));
+    set_corner(t, p, own, 0.0, level, uint(number * quads + fan % quads));
 }

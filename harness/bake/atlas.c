@@ -193,10 +193,12 @@ static void straighten(struct level *level, const struct level *coarser)
         }
 }
 
-static void quantise(struct level *level, enum atlas_alpha alpha, float *scratch)
+static void quantise(struct level *level, enum atlas_alpha alpha)
 {
     size_t count = (size_t)level->width_px * (size_t)level->height_px;
-    float scale = alpha == ATLAS_TEST ? atlas_test_scale(level->texels, count, scratch) : 1;
+    float scale = alpha == ATLAS_TEST
+                      ? atlas_test_scale(level->texels, level->width_px, level->height_px)
+                      : 1;
     for (size_t at = 0; at < count; at++) {
         const float *texel = level->texels + TEXEL_FLOATS * at;
         const float *color = alpha == ATLAS_BLEND ? texel : level->straight + 3 * at;
@@ -210,7 +212,7 @@ static void quantise(struct level *level, enum atlas_alpha alpha, float *scratch
 }
 
 /* All levels of one picture, from its finest. */
-static void build_levels(struct level *levels, enum atlas_alpha alpha, float *scratch)
+static void build_levels(struct level *levels, enum atlas_alpha alpha)
 {
     int last = 0;
     for (; levels[last].width_px > 1 || levels[last].height_px > 1; last++)
@@ -221,7 +223,7 @@ static void build_levels(struct level *levels, enum atlas_alpha alpha, float *sc
         straighten(&levels[i], coarser);
         if (coarser)
             atlas_fill(levels[i].texels, levels[i].width_px, levels[i].height_px, coarser->texels);
-        quantise(&levels[i], alpha, scratch);
+        quantise(&levels[i], alpha);
     }
 }
 
@@ -267,7 +269,6 @@ static void upload(struct workspace *workspace, struct arena *scratch,
 {
     struct gl *gl = workspace->gl;
     struct level *levels = levels_create(scratch, atlas);
-    float *sorted = ARENA_ARRAY(scratch, float, (size_t)atlas->width_px *(size_t)atlas->height_px);
     float color[3] = {0, 0, 0};
     int last = 0, layer = 0;
     while (levels[last].width_px > 1 || levels[last].height_px > 1)
@@ -279,7 +280,7 @@ static void upload(struct workspace *workspace, struct arena *scratch,
     for (size_t i = 0; i < atlas->species_count; i++)
         for (size_t view = 0; plants[i] && view < atlas->views_count; view++, layer++) {
             expand(plants[i], view, atlas, levels[0].texels);
-            build_levels(levels, request->alpha, sorted);
+            build_levels(levels, request->alpha);
             upload_picture(gl, atlas, levels, layer);
             for (size_t k = 0; k < 3; k++)
                 color[k] += levels[last].straight[k] / (float)atlas->layers;

@@ -261,7 +261,7 @@ static float brightest(const struct mesh *mesh)
 {
     float color = 0, most = 0;
     for (size_t i = 0; mesh->colors && i < 3 * mesh->vertices_count; i++)
-        color = fmaxf(color, mesh->colors[0][i]);
+        color = fmaxf(color, mesh->colors[i / 3][i % 3]);
     for (size_t i = 0; i < mesh->materials_count; i++) {
         const struct material *material = &mesh->materials[i];
         float texel = material->texture ? 0 : 1;

@@ -2,7 +2,6 @@
 #include "bake/atlas_bake.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 void atlas_halve(const float *from, int width_px, int height_px, float *to)
@@ -44,24 +43,57 @@ void atlas_fill(float *texels, int width_px, int height_px, const float *coarser
         }
 }
 
-static int compare_down(const void *a, const void *b)
+/* Coverage, scaled and clamped as a byte holds it, at a point between texels; nothing lies outside.
+ */
+static float coverage_at(const float *texels, int width_px, int height_px, float x, float y,
+                         float scale)
 {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x < y) - (x > y);
+    int column = (int)floorf(x), row = (int)floorf(y);
+    float sum = 0;
+    for (int k = 0; k < 4; k++) {
+        int i = column + (k & 1), j = row + (k >> 1);
+        float weight = (k & 1 ? x - (float)column : 1 - x + (float)column) *
+                       (k >> 1 ? y - (float)row : 1 - y + (float)row);
+        if (i < 0 || j < 0 || i >= width_px || j >= height_px)
+            continue;
+        float alpha = texels[TEXEL_FLOATS * ((size_t)j * (size_t)width_px + (size_t)i) + 3];
+        sum += weight * fminf(scale * alpha, 1);
+    }
+    return sum;
 }
 
-float atlas_test_scale(const float *texels, size_t count, float *scratch)
+/* Share of the level that passes the test: at four points a texel, at one in large levels. */
+static double tested_share(const float *texels, int width_px, int height_px, float scale)
 {
-    double sum = 0;
-    for (size_t i = 0; i < count; i++) {
-        scratch[i] = texels[i * TEXEL_FLOATS + 3];
-        sum += scratch[i];
+    int points = width_px * height_px > 4096 ? 1 : 4;
+    size_t passed = 0;
+    for (int y = 0; y < height_px; y++)
+        for (int x = 0; x < width_px; x++)
+            for (int k = 0; k < points; k++) {
+                int corner = points == 4 ? k : (x + 2 * y) & 3;
+                float dx = corner & 1 ? 0.25f : -0.25f, dy = corner & 2 ? 0.25f : -0.25f;
+                passed += coverage_at(texels, width_px, height_px, (float)x + dx, (float)y + dy,
+                                      scale) >= 0.5f;
+            }
+    return (double)passed / ((double)points * width_px * height_px);
+}
+
+float atlas_test_scale(const float *texels, int width_px, int height_px)
+{
+    enum { STEPS = 12 };
+    size_t count = (size_t)width_px * (size_t)height_px;
+    double wanted = 0;
+    for (size_t i = 0; i < count; i++)
+        wanted += texels[i * TEXEL_FLOATS + 3] / (double)count;
+    if (wanted <= 0)
+        return 1;
+    double low = 0.125, high = 8; /* the share grows with the scale */
+    for (int step = 0; step < STEPS; step++) {
+        double middle = sqrt(low * high);
+        if (tested_share(texels, width_px, height_px, (float)middle) < wanted)
+            low = middle;
+        else
+            high = middle;
     }
-    size_t covered = (size_t)(sum + 0.5);
-    if (covered == 0)
-        return 0;
-    qsort(scratch, count, sizeof *scratch, compare_down);
-    /* Between the last texel that shall pass and the first that shall not. */
-    float passes = scratch[covered - 1], fails = covered < count ? scratch[covered] : 0;
-    return 1 / (passes + fails);
+    return (float)sqrt(low * high);
 }

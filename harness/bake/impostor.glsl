@@ -34,7 +34,7 @@ uniform int last_level;
 out vec4 place[VIEWS];              // texture coordinates, layer, weight
 flat out vec4 light_factors[VIEWS]; // of the four channels
 flat out vec3 light_rest;           // light without channels, of each picture
-flat out vec4 shared_terms;         // albedo scale, level, radius (m, world), tree
+flat out vec4 shared_terms;         // albedo scale, level, radius (m, world), quad's number
 out float clear_share;              // what the fog leaves
 
 vec3 to_tree(vec3 v, tree t)
@@ -118,7 +118,7 @@ uint scramble(uint x)
     return x ^ (x >> 16);
 }
 
-// Coverage as samples of a pixel: right in the mean, and independent from tree to tree, so that layers add up as
+// Coverage as samples of a pixel: right in the mean, and independent from quad to quad, so that layers add up as
 // they do in blending.
 int sample_mask(float coverage)
 {
@@ -136,8 +136,8 @@ void main()
     for (int k = 0; k < VIEWS; k++) {
         vec4 texel = textureLod(albedo_map, place[k].xyz, shared_terms.y);
         vec4 light = textureLod(light_map, place[k].xyz, shared_terms.y);
-        float diffuse = max(light_rest[k] + dot(light, light_factors[k]), 0.0);
-        vec3 lit = texel.rgb * (sun_radiance * diffuse + ambient);
+        float diffuse = light_rest[k] + dot(light, light_factors[k]);
+        vec3 lit = texel.rgb * max(sun_radiance * diffuse + ambient, 0.0);
 #ifdef STRAIGHT
         lit *= texel.a;
 #endif
