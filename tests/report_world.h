@@ -1,4 +1,5 @@
-/* A synthetic run for the tests of the report: plausible numbers and small pictures, made from a seed. */
+/* A synthetic run for the tests of the report: plausible numbers and small pictures, made from a
+ * seed. */
 #ifndef TREELINE_TESTS_REPORT_WORLD_H
 #define TREELINE_TESTS_REPORT_WORLD_H
 
@@ -13,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORLD_WIDTH = 160, WORLD_HEIGHT = 120, WORLD_ROUNDS = 5, WORLD_FRAMES = 9, WORLD_VIEWS = 3 };
+enum { WORLD_WIDTH = 96, WORLD_HEIGHT = 72, WORLD_ROUNDS = 5, WORLD_FRAMES = 9, WORLD_VIEWS = 3 };
 
 struct world_method {
     const char *name, *options;
@@ -90,7 +91,8 @@ static void world_reference(struct arena *arena, const char *folder, const char 
     for (size_t i = 0; i < 4 * WORLD_WIDTH * WORLD_HEIGHT; i++)
         (*frame)->rgba[i] *= i % 4 == 3 || (*frame)->rgba[i | 3] == 0 ? 1 : light;
     uint64_t key = world_key(scene, trees, view, effects);
-    char *path = arena_printf(arena, "%s/references/%016llx.frame", folder, (unsigned long long)key);
+    char *path =
+        arena_printf(arena, "%s/references/%016llx.frame", folder, (unsigned long long)key);
     struct error error = {0};
     if (!file_exists(path) && frame_save(*frame, path, &error) != STATUS_OK)
         fprintf(stderr, "%s\n", error.text);
@@ -106,7 +108,8 @@ static void world_view(struct arena *arena, const char *folder, struct result *r
     size_t trees = result->cell.trees;
     *out = (struct result_view){.time = view / 2.0,
                                 .distance_m = walks ? 200.0 / (1 << 2 * view) : 120,
-                                .same_key = world_key(result->cell.scene, trees, view, method->effects),
+                                .same_key =
+                                    world_key(result->cell.scene, trees, view, method->effects),
                                 .full_key = world_key(result->cell.scene, trees, view, EFFECTS_ALL),
                                 .compared = true,
                                 .same_standard_error = 0.002f,
@@ -116,7 +119,8 @@ static void world_view(struct arena *arena, const char *folder, struct result *r
     struct frame *drawn = world_frame(arena, strcmp(method->name, "null") ? trees : 0, view,
                                       method->error, result->cell.trees + view);
     out->picture_hash = frame_hash(drawn);
-    out->picture = arena_printf(arena, "pictures/%016llx.frame", (unsigned long long)out->picture_hash);
+    out->picture =
+        arena_printf(arena, "pictures/%016llx.frame", (unsigned long long)out->picture_hash);
     frame_save(drawn, arena_printf(arena, "%s/%s", folder, out->picture), &error);
     metrics_compare(arena, drawn, same, &out->same, NULL, &error);
     metrics_compare(arena, drawn, full, &out->full, NULL, &error);
@@ -143,9 +147,15 @@ static void world_result(struct arena *arena, const char *folder, const char *sc
                               .threads = 2,
                               .frames_count = WORLD_FRAMES};
     struct cell *cell = &result->cell;
-    *cell = (struct cell){.scene = scene, .method_name = method->name, .options = method->options,
-                          .trees = trees, .lod = method->lod, .width_px = WORLD_WIDTH,
-                          .height_px = WORLD_HEIGHT, .format = TARGET_RGBA16F, .seed = 1};
+    *cell = (struct cell){.scene = scene,
+                          .method_name = method->name,
+                          .options = method->options,
+                          .trees = trees,
+                          .lod = method->lod,
+                          .width_px = WORLD_WIDTH,
+                          .height_px = WORLD_HEIGHT,
+                          .format = TARGET_RGBA16F,
+                          .seed = 1};
     cell->name = arena_printf(arena, "%s/%s%s%s/trees=%zu/lod=%s/size=%dx%d/target=rgba16f/seed=1",
                               scene, method->name, *method->options ? ":" : "", method->options,
                               trees, lod_word(method->lod), WORLD_WIDTH, WORLD_HEIGHT);
@@ -201,18 +211,31 @@ static struct run *world_run(struct arena *arena, const char *folder)
     static const struct {
         const char *scene;
         size_t trees;
-    } groups[] = {{"poplar-forest", 1}, {"poplar-forest", 100}, {"poplar-forest", 1000}, {"walk-in", 30}};
+    } groups[] = {
+        {"poplar-forest", 1}, {"poplar-forest", 100}, {"poplar-forest", 1000}, {"walk-in", 30}};
     struct error error = {0};
     file_make_folder(arena_printf(arena, "%s/references", folder), &error);
     file_make_folder(arena_printf(arena, "%s/pictures", folder), &error);
     struct run *run = ARENA_NEW(arena, struct run);
     run->folder = folder;
-    run->provenance = (struct provenance){
-        .host = "testhost", .cpu = "AMD EPYC <9B14>", .kernel = "6.1.0", .os = "Debian GNU/Linux 12",
-        .compiler = "gcc 12.2.0", .flags = "-O3 -g", .revision = "0123abcd", .libraries = "Mesa 22.3.6",
-        .plan = "quick", .command = "./treeline run quick --out results/x & \"y\"",
-        .started = "2026-11-22T12:00:00Z", .cores = 2, .memory_bytes = 25.2e9, .seed = 1,
-        .plan_hash = 42, .rounds = WORLD_ROUNDS, .frame_seconds = 2, .reference_error = 0.002};
+    run->provenance = (struct provenance){.host = "testhost",
+                                          .cpu = "AMD EPYC <9B14>",
+                                          .kernel = "6.1.0",
+                                          .os = "Debian GNU/Linux 12",
+                                          .compiler = "gcc 12.2.0",
+                                          .flags = "-O3 -g",
+                                          .revision = "0123abcd",
+                                          .libraries = "Mesa 22.3.6",
+                                          .plan = "quick",
+                                          .command = "./treeline run quick --out results/x & \"y\"",
+                                          .started = "2026-11-22T12:00:00Z",
+                                          .cores = 2,
+                                          .memory_bytes = 25.2e9,
+                                          .seed = 1,
+                                          .plan_hash = 42,
+                                          .rounds = WORLD_ROUNDS,
+                                          .frame_seconds = 2,
+                                          .reference_error = 0.002};
     run->results = ARENA_ARRAY(arena, struct result, 4 * WORLD_METHODS * WORLD_ROUNDS);
     for (int round = 0; round < WORLD_ROUNDS; round++)
         for (size_t g = 0; g < 4; g++)

@@ -105,8 +105,9 @@ void answer_headline(const struct book *book, FILE *out)
     /* Three points tell the story: the fastest, the one in the middle, the most exact. */
     size_t told[3] = {0, count / 2, count - 1};
     fputs("In ", out);
-    html_put(out, group->title);
-    fputs(", ", out);
+    html_put(out, book->families[group->family]);
+    fprintf(out, " with %s tree%s, ", number_plain((double)group->trees, 15).text,
+            group->trees == 1 ? "" : "s");
     for (size_t k = 0; k < 3; k++) {
         if (k > 0 && told[k] <= told[k - 1])
             continue;
@@ -127,7 +128,7 @@ void answer_fronts(const struct book *book, FILE *out)
     for (size_t g = 0; g < book->groups_count; g++) {
         const struct group *group = &book->groups[g];
         size_t count = book_front(book, group, front);
-        fputs("<tr><th scope=\"row\">", out);
+        fputs("<tr><th scope=\"row\" class=\"scene\">", out);
         html_put(out, book->families[group->family]);
         fprintf(out, "</th><td class=\"n\">%s</td><td>",
                 number_plain((double)group->trees, 15).text);
@@ -199,8 +200,9 @@ void answer_overall(const struct book *book, FILE *out)
             continue;
         fputs("<tr><th scope=\"row\">", out);
         put_method(book, tally.example, out);
+        double slowdown = stats_geometric_mean(tally.slowdowns, tally.succeeded);
         fprintf(out, "</th><td class=\"n\">%s</td><td class=\"n\">",
-                number_plain(stats_geometric_mean(tally.slowdowns, tally.succeeded), 3).text);
+                slowdown == 1 ? "1.00" : number_plain(slowdown, 3).text);
         size_t n = tally.flips_count;
         fputs(number_plain(stats_median(tally.flips, n), 3).text, out);
         if (n > 1)

@@ -40,7 +40,8 @@ static int put_ticks(const struct axis *axis, size_t list, FILE *out)
 {
     int count = 0;
     int first = (int)floor(log10(axis->low)), last = (int)floor(log10(axis->high));
-    for (int power = first; power <= last; power++)
+    int step = 1 + (last - first) / 9; /* many decades: only some get a tick */
+    for (int power = first; power <= last; power += step)
         for (const double *m = mantissas[list]; *m > 0; m++) {
             double value = *m * pow(10, power);
             if (value < axis->low || value > axis->high)

@@ -109,13 +109,16 @@ struct varying {
     bool lod, format;
 };
 
-static struct varying find_varying(const struct book *book)
+/* lod: over the cells of the same method; target format: over all. */
+static struct varying find_varying(const struct book *book, const struct row *row)
 {
     struct varying varying = {false, false};
-    for (size_t i = 1; i < book->rows_count; i++) {
-        const struct cell *a = &book->rows[0].seen->cell, *b = &book->rows[i].seen->cell;
-        varying.lod = varying.lod || a->lod != b->lod;
-        varying.format = varying.format || a->format != b->format;
+    const struct cell *cell = &row->seen->cell;
+    for (size_t i = 0; i < book->rows_count; i++) {
+        const struct cell *other = &book->rows[i].seen->cell;
+        bool same_method = strcmp(cell->method_name, other->method_name) == 0;
+        varying.lod = varying.lod || (same_method && cell->lod != other->lod);
+        varying.format = varying.format || cell->format != other->format;
     }
     return varying;
 }
@@ -279,9 +282,8 @@ struct book *book_make(struct arena *arena, const struct run *run)
             book->effects_differ ||
             (row->compared && !row->is_floor && row->seen->effects != row->seen->scene_effects);
     }
-    struct varying varying = find_varying(book);
     for (size_t i = 0; i < book->rows_count; i++)
-        label_row(arena, &book->rows[i], varying);
+        label_row(arena, &book->rows[i], find_varying(book, &book->rows[i]));
     qsort(book->rows, book->rows_count, sizeof *book->rows, compare_rows);
     for (size_t i = 0; i < book->rows_count; i++)
         index_of(book->methods, &book->methods_count, book->rows[i].method);

@@ -142,7 +142,8 @@ struct figure {
     char *caption;          /* HTML; NULL: none */
     char *svg, *svg_narrow; /* for inclusion; NULL: could not be drawn */
 };
-/* Figures of a group: errors against frame time. metric: COLUMN_same_flip ... */
+/* Figures of a group: errors against frame time. metric: COLUMN_same_flip ...; the figure stays
+ * empty when no cell was compared. */
 enum status plot_trade(const struct book *book, const struct group *group, enum column_index metric,
                        const char *folder, struct figure *figure, struct error *error);
 /* Frame rate against trees of a family. *drawn is false when there are fewer than two tree counts.

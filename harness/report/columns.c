@@ -70,8 +70,9 @@ struct number number_plain(double value, int digits)
         snprintf(number.text, sizeof number.text, "%.*e", digits - 1, value);
         return number;
     }
-    int power = value != 0 ? (int)floor(log10(magnitude)) : 0;
-    int decimals = digits - 1 - power;
+    char rounded[40]; /* the power of ten after rounding: 0.9996 is 1.00 */
+    snprintf(rounded, sizeof rounded, "%.*e", digits - 1, value);
+    int decimals = digits - 1 - atoi(strchr(rounded, 'e') + 1);
     decimals = value == 0 || decimals < 0 ? 0 : decimals;
     if (value == floor(value) && magnitude < 1e5 && magnitude >= 1)
         decimals = 0; /* counts have no decimals */

@@ -57,6 +57,14 @@ static void put_fact(const struct page *page, const char *what, const char *valu
     put(page, "</dd></div>\n");
 }
 
+/* "2026-11-22T12:00:00Z" as "2026-11-22 12:00 UTC"; anything else as it is. */
+static const char *plain_date(struct arena *arena, const char *iso)
+{
+    if (!iso || strlen(iso) != 20 || iso[10] != 'T' || iso[19] != 'Z')
+        return iso;
+    return arena_printf(arena, "%.10s %.5s UTC", iso, iso + 11);
+}
+
 static void put_head(const struct page *page)
 {
     FILE *out = page->out;
@@ -93,7 +101,7 @@ static void put_facts(const struct page *page)
     put_fact(page, "repetitions, each a fresh process", repetitions);
     put_fact(page, "drawn by", book->rows_count ? book->rows[0].seen->renderer : NULL);
     put_fact(page, "on", from->cpu);
-    put_fact(page, "started", from->started);
+    put_fact(page, "started", plain_date(page->arena, from->started));
     put(page, "</dl>\n<nav aria-label=\"sections\"><a href=\"#trade\">error and time</a>"
               "<a href=\"#growth\">more trees</a><a href=\"#distance\">distance</a>"
               "<a href=\"#pictures\">pictures</a><a href=\"#results\">results</a>"
@@ -157,7 +165,10 @@ static void put_trade(const struct page *page)
                 "RMSE, error of the representation.", "RMSE, total error."};
             put_figure(page, &page->plots->trade[g][k], captions[k]);
         }
-        put(page, "</div></div></details>\n");
+        put(page, page->plots->trade[g][0].svg
+                      ? "</div></div></details>\n"
+                      : "<p class=\"soft\">No plot: no cell has both a frame time and an error."
+                        "</p></div></div></details>\n");
     }
     put(page, "<h3>How to read the plots</h3>\n");
     put(page, page->reading);
@@ -265,7 +276,7 @@ static void put_results(const struct page *page)
     put(page, "</tr></thead><tbody>\n");
     for (size_t i = 0; i < book->rows_count; i++) {
         const struct row *row = &book->rows[i];
-        fprintf(page->out, "<tr%s><td>",
+        fprintf(page->out, "<tr%s><td class=\"scene\">",
                 !row->ok                 ? " class=\"failed\""
                 : row->summary->on_front ? " class=\"front\""
                                          : "");
@@ -319,7 +330,7 @@ static void put_cost(const struct page *page)
         const struct row *row = &book->rows[i];
         if (!row->ok)
             continue;
-        put(page, "<tr><td>");
+        put(page, "<tr><td class=\"scene\">");
         put_safe(page, book->families[book->groups[row->group].family]);
         fprintf(page->out, "</td><td class=\"n\">%s</td><td>",
                 number_plain((double)row->trees, 15).text);

@@ -4,14 +4,15 @@
 #include "base/file.h"
 #include "wall/gnuplot.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
     WIDTH_PX = 560,
-    HEIGHT_PX = 380,
+    HEIGHT_PX = 350,
     NARROW_WIDTH_PX = 340,
-    NARROW_HEIGHT_PX = 330,
+    NARROW_HEIGHT_PX = 300,
     KEY_PX = 17
 };
 static const double timeout_seconds = 60;
@@ -39,6 +40,8 @@ void plot_axes(struct plot *plot, const struct axis *x, const struct axis *y, co
                const char *y_label)
 {
     FILE *gp = plot->gp;
+    plot->x = *x;
+    plot->y = *y;
     fputs("# ", gp);
     plot_text(gp, plot->title);
     fprintf(gp, ". Draws it again: gnuplot %s.gp\n", plot->name);
@@ -50,14 +53,18 @@ void plot_axes(struct plot *plot, const struct axis *x, const struct axis *y, co
             tint_rgb(TINT_FAINT));
     const char *const texts[][2] = {
         {"title", plot->title}, {"xlabel", x_label}, {"ylabel", y_label}};
+    static const char *const offsets[] = {" offset 0,-0.5", " offset 0,0.4", " offset 1,0"};
     for (size_t i = 0; i < 3; i++) {
         fprintf(gp, "set %s ", texts[i][0]);
         plot_text(gp, texts[i][1]);
+        if (i == 1)
+            fputs(".\"\\n \"", gp); /* room between the label and the key */
         fprintf(gp, " noenhanced textcolor rgb \"#%06x\"%s\n", tint_rgb(i ? TINT_MUTED : TINT_INK),
-                i ? "" : " offset 0,-0.4");
+                offsets[i]);
     }
     fprintf(gp,
-            "set key below left Left reverse noenhanced samplen 1.6 textcolor rgb \"#%06x\"\n"
+            "set key below left Left reverse noenhanced samplen 1.6 textcolor rgb "
+            "\"#%06x\"\n"
             "set bars 0.6\n",
             tint_rgb(TINT_INK));
 }
@@ -73,19 +80,73 @@ void plot_curve(struct plot *plot)
     fputs(plot->curves++ ? ", \\\n    " : "plot ", plot->gp);
 }
 
-void plot_note(struct plot *plot, double x, double y, const char *where, const char *text)
+/* The plotting area of the wide version, about, and of its small letters. */
+static const double area_width_px = 440, area_height_px = 245, letter_px = 5.8, line_px = 12;
+
+static bool boxes_touch(const struct plot_box *a, const struct plot_box *b)
 {
-    fprintf(plot->gp, "set label %d ", 10 + plot->notes++);
-    plot_text(plot->gp, text);
-    fprintf(plot->gp, " at %.9g,%.9g %s noenhanced font \",10\" textcolor rgb \"#%06x\" front\n", x,
-            y, where, tint_rgb(TINT_MUTED));
+    return a->left < b->right && b->left < a->right && a->bottom < b->top && b->bottom < a->top;
+}
+
+static bool box_is_free(const struct plot *plot, const struct plot_box *box)
+{
+    if (box->left < 2 || box->right > area_width_px || box->bottom < 2 || box->top > area_height_px)
+        return false;
+    for (size_t i = 0; i < plot->boxes_count; i++)
+        if (boxes_touch(box, &plot->boxes[i]))
+            return false;
+    return true;
+}
+
+static double place_px(const struct axis *axis, double value, double length_px)
+{
+    return length_px * log(value / axis->low) / log(axis->high / axis->low);
+}
+
+void plot_keep_clear(struct plot *plot, double x, double y)
+{
+    double at_x = place_px(&plot->x, x, area_width_px);
+    double at_y = place_px(&plot->y, y, area_height_px);
+    if (plot->boxes_count < sizeof plot->boxes / sizeof *plot->boxes)
+        plot->boxes[plot->boxes_count++] =
+            (struct plot_box){at_x - 5, at_x + 5, at_y - 5, at_y + 5};
+}
+
+void plot_note(struct plot *plot, double x, double y, const char *text)
+{
+    /* Below a front nothing stands, so there first. Sides: -1 ends at the point, +1 begins there.
+     */
+    static const struct {
+        int side, up;
+    } places[] = {{-1, -1}, {+1, +1}, {-1, 0}, {+1, 0}, {+1, -1}, {-1, +1}};
+    double width = letter_px * (double)strlen(text);
+    double at_x = place_px(&plot->x, x, area_width_px);
+    double at_y = place_px(&plot->y, y, area_height_px);
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        double start = at_x + places[i].side * 9.0, middle = at_y + places[i].up * 10.0;
+        struct plot_box box = {fmin(start, start + places[i].side * width),
+                               fmax(start, start + places[i].side * width), middle - line_px / 2,
+                               middle + line_px / 2};
+        if (!box_is_free(plot, &box) ||
+            plot->boxes_count == sizeof plot->boxes / sizeof *plot->boxes)
+            continue;
+        plot->boxes[plot->boxes_count++] = box;
+        fprintf(plot->gp, "set label %d ", 10 + plot->notes++);
+        plot_text(plot->gp, text);
+        fprintf(plot->gp,
+                " at %.9g,%.9g %s offset %.2f,%.2f noenhanced font \",10\" textcolor rgb "
+                "\"#%06x\" front\n",
+                x, y, places[i].side < 0 ? "right" : "left", places[i].side * 1.2,
+                places[i].up * 0.75, tint_rgb(TINT_MUTED));
+        return;
+    }
 }
 
 static void put_terminals(struct plot *plot)
 {
     const char *name = plot->name;
     FILE *gp = plot->gp;
-    int extra_px = plot->key_rows * KEY_PX;
+    int extra_px = (plot->key_rows + 1) * KEY_PX;
     fprintf(gp,
             "\nset terminal pngcairo size %d,%d font \"sans,12\" fontscale 2 linewidth 2 "
             "pointscale 2 background \"#ffffff\"\nset output \"%s.png\"\nreplot\n",
@@ -95,7 +156,7 @@ static void put_terminals(struct plot *plot)
     fprintf(gp,
             "set key maxcols 1\nset terminal svg size %d,%d dynamic font \"sans-serif,12\"\n"
             "set output \"%s-narrow.svg\"\nreplot\nset output\n",
-            NARROW_WIDTH_PX, NARROW_HEIGHT_PX + 2 * extra_px, name);
+            NARROW_WIDTH_PX, NARROW_HEIGHT_PX + (plot->columns > 1 ? 3 : 1) * extra_px, name);
 }
 
 /* Rereads an SVG that gnuplot wrote, themes the file, and returns the form for inclusion. */
@@ -125,6 +186,14 @@ static enum status adopt_svg(const struct plot *plot, const char *suffix, char *
     return status;
 }
 
+void plot_discard(struct plot *plot)
+{
+    fclose(plot->gp);
+    fclose(plot->dat);
+    free(plot->script);
+    free(plot->data);
+}
+
 enum status plot_close(struct plot *plot, struct figure *figure, struct error *error)
 {
     struct arena *arena = plot->book->arena;
@@ -140,7 +209,7 @@ enum status plot_close(struct plot *plot, struct figure *figure, struct error *e
     FILE *whole = open_memstream(&text, &size);
     fprintf(whole,
             "set terminal svg size %d,%d dynamic font \"sans-serif,13\"\nset output \"%s.svg\"\n%s",
-            WIDTH_PX, HEIGHT_PX + plot->key_rows * KEY_PX, plot->name, plot->script);
+            WIDTH_PX, HEIGHT_PX + (plot->key_rows + 1) * KEY_PX, plot->name, plot->script);
     fclose(plot->gp);
     free(plot->script);
     enum status written =

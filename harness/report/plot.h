@@ -5,6 +5,10 @@
 #include "report/axis.h"
 #include "report/book.h"
 
+struct plot_box { /* px from the lower left corner of the plotting area */
+    double left, right, bottom, top;
+};
+
 struct plot {
     const struct book *book;
     const char *folder, *name, *title;
@@ -14,7 +18,11 @@ struct plot {
     int blocks;   /* data blocks so far */
     int curves;   /* after "plot" */
     int key_rows; /* makes room under the plot */
+    int columns;  /* of the key in the wide version; the narrow one has one */
     int notes;    /* labels that the narrow version leaves out */
+    struct axis x, y;
+    struct plot_box boxes[256]; /* where no label may stand */
+    size_t boxes_count;
 };
 
 void plot_open(struct plot *plot, const struct book *book, const char *folder, const char *name,
@@ -28,8 +36,13 @@ void plot_text(FILE *out, const char *text);
 int plot_block(struct plot *plot, const char *what);
 /* The next curve: writes "plot " or ", ". */
 void plot_curve(struct plot *plot);
-/* A small text at a place of the plot, left out of the narrow version. */
-void plot_note(struct plot *plot, double x, double y, const char *where, const char *text);
+/* No label may cover this point. */
+void plot_keep_clear(struct plot *plot, double x, double y);
+/* A small text beside a point, where it covers nothing; left out when there is no such place, and
+ * in the narrow version. Call before the first curve. */
+void plot_note(struct plot *plot, double x, double y, const char *text);
+/* Nothing to draw after all. */
+void plot_discard(struct plot *plot);
 /* Runs gnuplot and fills the figure. */
 enum status plot_close(struct plot *plot, struct figure *figure, struct error *error);
 

@@ -137,6 +137,12 @@ static void trade_front(struct trade *trade)
     }
     if (count == 0)
         return;
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &plot->book->rows[group->rows[i]];
+        if (is_drawn(trade, row))
+            plot_keep_clear(plot, 1e3 * row->values[COLUMN_frame_seconds],
+                            fmax(row->values[trade->metric], trade->y.low));
+    }
     int block = plot_block(plot, "front: ms error, as a staircase from edge to edge");
     for (size_t i = 0; i < count; i++) {
         const struct row *row = &plot->book->rows[order[i]];
@@ -148,7 +154,7 @@ static void trade_front(struct trade *trade)
         if (i + 1 == count)
             fprintf(plot->dat, "%.9g %.9g\n", trade->x.high, error);
         if (*row->variant)
-            plot_note(plot, ms, error, "right offset -0.9,-0.7", row->variant);
+            plot_note(plot, ms, error, row->variant);
     }
     plot_curve(plot);
     fprintf(plot->gp,
@@ -190,6 +196,7 @@ static void key_of_methods(struct plot *plot, const bool *used)
         entries++;
     }
     plot->key_rows += (entries + 2) / 3;
+    plot->columns = 3;
 }
 
 enum status plot_trade(const struct book *book, const struct group *group, enum column_index metric,
@@ -217,8 +224,8 @@ enum status plot_trade(const struct book *book, const struct group *group, enum 
             used[m] = used[m] || plot->curves > before;
         }
     if (plot->curves == 0) {
-        plot_curve(plot);
-        fputs("keyentry with points pointtype 0 title \"no cell was compared\"", plot->gp);
+        plot_discard(plot);
+        return STATUS_OK;
     }
     key_of_methods(plot, used);
     return plot_close(plot, figure, error);
@@ -314,16 +321,12 @@ enum status plot_growth(const struct book *book, size_t family, const char *fold
     plot_open(&plot, book, folder, arena_printf(book->arena, "growth-%s", slug),
               book->families[family]);
     plot_axes(&plot, &x, &y, "trees", "frames a second");
-    fputs("set key maxcols 2\n", plot.gp);
+    fputs("set key maxcols 1\n", plot.gp);
     for (size_t s = 0; s < book->series_count; s++)
         growth_series(&plot, family, s, variant_of(book, s));
-    plot.key_rows = (plot.key_rows + 1) / 2;
     *drawn = plot.curves > 0;
     if (!*drawn) {
-        fclose(plot.gp);
-        fclose(plot.dat);
-        free(plot.script);
-        free(plot.data);
+        plot_discard(&plot);
         return STATUS_OK;
     }
     return plot_close(&plot, figure, error);
@@ -387,12 +390,11 @@ enum status plot_distance(const struct book *book, const struct group *group, co
               group->title);
     plot_axes(&plot, &x, &y, "median distance to the trees in view [m]",
               "FLIP, reference with same effects");
-    fputs("set key maxcols 2\n", plot.gp);
+    fputs("set key maxcols 1\n", plot.gp);
     for (size_t i = 0; i < group->rows_count; i++) {
         const struct row *row = &book->rows[group->rows[i]];
         if (row->compared && !row->is_floor)
             distance_curve(&plot, row, y.low);
     }
-    plot.key_rows = (plot.key_rows + 1) / 2;
     return plot_close(&plot, figure, error);
 }

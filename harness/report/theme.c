@@ -60,13 +60,22 @@ const char *tint_variable(size_t tint)
     return tints[tint < TINTS_COUNT ? tint : TINT_INK].variable;
 }
 
+static bool draws_nothing(const struct book *book, size_t method_index)
+{
+    return strcmp(book->methods[method_index], "null") == 0;
+}
+
 const char *symbol_html(const struct book *book, size_t method_index)
 {
+    if (draws_nothing(book, method_index))
+        return "<path d=\"M-.25-1.2h.5v.95h.95v.5h-.95v.95h-.5v-.95h-.95v-.5h.95z\"/>";
     return symbols[place_of(book, method_index) % SYMBOLS_COUNT].svg;
 }
 
 int symbol_gnuplot(const struct book *book, size_t method_index, bool filled)
 {
+    if (draws_nothing(book, method_index))
+        return 1; /* + */
     return symbols[place_of(book, method_index) % SYMBOLS_COUNT].type - !filled;
 }
 

@@ -1,4 +1,5 @@
-/* Robust summaries with intervals, tests, fits. Pure functions of arrays; seeded where they resample. */
+/* Robust summaries with intervals, tests, fits. Pure functions of arrays; seeded where they
+ * resample. */
 #ifndef TREELINE_STATS_STATS_H
 #define TREELINE_STATS_STATS_H
 
@@ -17,7 +18,8 @@ double stats_median(const double *values, size_t count);
 double stats_quantile(const double *values, size_t count, double q); /* Hyndman-Fan type 7 */
 double stats_mad(const double *values, size_t count); /* median absolute deviation, x 1.4826 */
 
-/* Median with a bias-corrected accelerated bootstrap interval (Efron 1987), seeded. count < 3: low = min, high = max. */
+/* Median with a bias-corrected accelerated bootstrap interval (Efron 1987), seeded. count < 3: low
+ * = min, high = max. */
 struct interval stats_median_interval(const double *values, size_t count, uint64_t seed);
 /* Two-level: the median over repetitions of each repetition's median; repetitions are resampled. */
 struct interval stats_nested_median_interval(const double *const *values, const size_t *counts,
@@ -27,8 +29,8 @@ struct interval stats_ratio_interval(const double *a, const double *b, size_t co
 
 double stats_geometric_mean(const double *values, size_t count); /* of positive values */
 
-/* Exact two-sided p of Wilcoxon's signed-rank test on log ratios, zeros dropped, midranks; exact for n <= 50, normal
- * with continuity correction beyond. */
+/* Exact two-sided p of Wilcoxon's signed-rank test on log ratios, zeros dropped, midranks; exact
+ * for n <= 50, normal with continuity correction beyond. */
 double stats_signed_rank_p(const double *differences, size_t count);
 /* Benjamini-Hochberg adjusted p (q values), in place. */
 void stats_benjamini_hochberg(double *p, size_t count);
@@ -46,7 +48,8 @@ struct power_law stats_power_law(const double *x, const double *y, size_t count)
 double stats_normal_quantile(double p);
 double stats_student_quantile(double p, double degrees);
 
-/* Marks the points that no other point beats in both cost and error (lower is better); ties keep the first. */
+/* Marks the points that no other point beats in both cost and error (lower is better); ties keep
+ * the first. */
 void stats_pareto(const double *cost, const double *error, size_t count, bool *on_front);
 
 #endif
