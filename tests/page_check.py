@@ -60,9 +60,8 @@ for link in page.links:
         found.append(f"not beside the page: {link}")
 if re.search(r"url\((?!#|data:)", text) or "@import" in text:
     found.append("a style from outside")
-if re.search(r"\b(nan|inf|null\))\b", " ".join(page.words), re.IGNORECASE):
-    if re.search(r"(?<![\w-])-?(nan|inf)(?![\w-])", " ".join(page.words), re.IGNORECASE):
-        found.append("the page shows a NaN or an infinity")
+if re.search(r"(?<![\w-])-?(nan|inf)(?![\w-])", " ".join(page.words), re.IGNORECASE):
+    found.append("the page shows a NaN or an infinity")
 
 plots = os.path.join(out, "plots")
 for name in sorted(os.listdir(plots)) if os.path.isdir(plots) else []:
@@ -71,7 +70,7 @@ for name in sorted(os.listdir(plots)) if os.path.isdir(plots) else []:
         root = xml.etree.ElementTree.parse(path).getroot()
         if not root.tag.endswith("}svg") or "viewBox" not in root.attrib:
             found.append(f"{name}: not an SVG with a viewBox")
-        if re.search(r"rgb\(|['\"]black['\"]", open(path, encoding="utf-8").read()):
+        if re.search(r"rgb\(|['\"](black|white)['\"]", open(path, encoding="utf-8").read()):
             found.append(f"{name}: a colour that does not follow the theme")
     elif name.endswith(".png"):
         if open(path, "rb").read(8) != b"\x89PNG\r\n\x1a\n":

@@ -65,7 +65,7 @@ void plot_axes(struct plot *plot, const struct axis *x, const struct axis *y, co
     fprintf(gp,
             "set key below left Left reverse noenhanced samplen 1.6 textcolor rgb "
             "\"#%06x\"\n"
-            "set bars 0.6\n",
+            "set bars 0.6\nset pointintervalbox 0\n",
             tint_rgb(TINT_INK));
 }
 

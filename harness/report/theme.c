@@ -126,12 +126,18 @@ static size_t put_id(const char *at, const char *prefix, FILE *out)
     return 0;
 }
 
-static size_t put_black(const char *at, FILE *out)
+/* The two colours that gnuplot names: of the pen, and of what lies behind it. */
+static size_t put_named_color(const char *at, FILE *out)
 {
-    if (!starts(at, "'black'") && !starts(at, "\"black\""))
-        return 0;
-    fprintf(out, "%cvar(--ink)%c", at[0], at[0]);
-    return strlen("'black'");
+    static const char *const names[][2] = {{"black", "ink"}, {"white", "panel"}};
+    for (size_t i = 0; i < 2; i++) {
+        size_t length = strlen(names[i][0]);
+        if (starts(at + 1, names[i][0]) && at[1 + length] == at[0]) {
+            fprintf(out, "%cvar(--%s)%c", at[0], names[i][1], at[0]);
+            return length + 2;
+        }
+    }
+    return 0;
 }
 
 static void put_opening(const char *svg, const char *title, bool alone, FILE *out)
@@ -171,7 +177,7 @@ void theme_svg(const char *svg, const char *prefix, const char *title, bool alon
         else if ((*at == 'i' && word_start) || *at == 'h' || *at == 'u')
             taken = put_id(at, prefix, out);
         else if (*at == '\'' || *at == '"')
-            taken = put_black(at, out);
+            taken = put_named_color(at, out);
         else if (*at == '\t' || (*at == '\n' && before == '\n'))
             continue;
         if (taken)
