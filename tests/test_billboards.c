@@ -259,12 +259,20 @@ static void test_billboards__only_species_with_a_tree_are_built(void **state)
 static void test_billboards__terrain_in_front_hides_and_behind_does_not(void **state)
 {
     struct fixture *f = *state;
-    struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
+    struct mesh *bush = tree_mesh(f->arena, 400); /* so broad that a quad through its middle dips */
+    for (size_t i = 0; i < bush->vertices_count; i++) {
+        bush->positions[i][0] *= 1.5f;
+        bush->positions[i][1] *= 0.4f;
+        bush->positions[i][2] *= 3;
+    }
+    mesh_bounds(bush);
+    struct plant *plant = plant_from_mesh(f->arena, "bush", bush);
+    struct scene *scene = tree_scene(f->arena, plant, 1, 1);
     float heights[4] = {-0.01f, -0.01f, -0.01f, -0.01f}, normals[4][3];
     for (int i = 0; i < 4; i++)
         normals[i][0] = normals[i][2] = 0, normals[i][1] = 1;
     scene->terrain = (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}};
-    static const size_t columns[] = {9, 6};
+    static const size_t columns[] = {8, 7};
     static const char *const options[] = {"layout=hemisphere,views=121",
                                           "layout=hemisphere,views=121,depth=on"};
     for (int i = 0; i < 4; i++) {
