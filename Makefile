@@ -4,7 +4,7 @@
 #   make bench           installs what is missing, builds, runs the quick benchmark, writes the report
 #   make check           every test: units, command line, architecture, gcc and clang, sanitizers, EGL alone
 #   make test            the unit tests of one configuration; make test T=test_option for one
-#   make install PREFIX= DESTDIR=      make format      make lint      make clean
+#   make install PREFIX= DESTDIR=      make docs      make format      make lint      make clean
 #   gl=auto|egl|osmesa   which GL back ends to build in; auto takes those that pkg-config finds
 
 SHELL := /bin/bash
@@ -182,6 +182,10 @@ install: all
 	install -Dm644 -t $(DESTDIR)$(PREFIX)/share/treeline/reports/template reports/template/*
 	install -d $(DESTDIR)$(PREFIX)/share/man/man1
 	$(BINARY) help man > $(DESTDIR)$(PREFIX)/share/man/man1/treeline.1
+
+# Documents made by the program itself; the check compares them.
+docs: all
+	@./treeline help methods > methods/README.md
 
 FORMAT := $(shell git ls-files '*.c' '*.h' '*.cpp' 2>/dev/null)
 format:

@@ -26,6 +26,7 @@ check 'resume adds no line' test "$(wc -l <"$run/cells.jsonl")" -eq "$lines"
 check 'the report is written' ./treeline report "$run" --out "$page"
 check 'the page is there' test -s "$page/index.html"
 check 'the page asks nothing of the network' bash -c "! grep -E '(src|href)=\"(https?:)?//' '$page/index.html'"
+check 'methods/README.md says what the program says (make docs)' bash -c './treeline help methods | diff - methods/README.md'
 check 'no NaN is shown' bash -c "! grep -wE 'nan|-nan|NaN' '$page'/tables/*"
 check 'the results make sense' python3 - "$run/cells.jsonl" <<'PY'
 import json, sys

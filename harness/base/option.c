@@ -217,6 +217,16 @@ size_t option_value(const struct option *option, const void *values, char *text,
     return (size_t)number_print(value, option->type == OPTION_FLOAT, text, size);
 }
 
+size_t option_fallback(const struct option *option, char *text, size_t size)
+{
+    /* A struct that holds this field only. */
+    double field = 0;
+    struct option alone = *option;
+    alone.offset = 0;
+    store(&alone, &field, option->fallback);
+    return option_value(&alone, &field, text, size);
+}
+
 size_t option_allowed(const struct option *option, char *text, size_t size)
 {
     if (option->type == OPTION_BOOL)

@@ -56,6 +56,9 @@ size_t options_print(const struct option *table, const void *values, char *text,
 /* One option's value as text ("on", "16", "0.5", "blend"); returns the length needed. */
 size_t option_value(const struct option *option, const void *values, char *text, size_t size);
 
+/* The default of one option as text, whatever struct it belongs to; returns the length needed. */
+size_t option_fallback(const struct option *option, char *text, size_t size);
+
 /* "1..512", "on|off" or the words; returns the length needed. */
 size_t option_allowed(const struct option *option, char *text, size_t size);
 

@@ -57,6 +57,8 @@ void cli_shot_view(const struct cli_shot *shot, const struct scene *scene, struc
 
 /* The manual page, roff, to stdout: from the verbs' own --help and the status table. */
 int man_page(void);
+/* methods/README.md to stdout: from the methods' own structs and option tables. */
+int methods_page(void);
 /* The exit codes as a table on stdout. */
 void exit_codes_print(void);
 

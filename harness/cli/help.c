@@ -26,12 +26,7 @@ static void options_explain(const struct option *table, const char *none)
         printf("  %-24s %-10s %-28s %s\n", "option", "default", "allowed", "meaning");
     for (const struct option *option = table; option && option->name; option++) {
         char fallback[64], allowed[256];
-        /* option_value reads a struct: give it one that holds only this field. */
-        char values[512] = {0};
-        struct option moved[2] = {*option, OPTION_END};
-        moved[0].offset = 0;
-        options_default(moved, values);
-        option_value(&moved[0], values, fallback, sizeof fallback);
+        option_fallback(option, fallback, sizeof fallback);
         option_allowed(option, allowed, sizeof allowed);
         printf("  %-24s %-10s %-28s %s%s%s%s\n", option->name, fallback, allowed, option->doc,
                option->unit && *option->unit ? " [" : "", option->unit ? option->unit : "",
@@ -75,8 +70,8 @@ static int topics_print(void)
     printf("\nmethods (`treeline help METHOD`):\n");
     for (const struct method *const *each = methods_builtin; *each; each++)
         printf("  %-14s%s\n", (*each)->name, (*each)->summary);
-    printf("\nother topics: plan (settings of a plan), exit (exit codes), man (the manual page), "
-           "version,\nand the name of a generated plant\n");
+    printf("\nother topics: plan (settings of a plan), exit (exit codes), methods (all of them, as Markdown),\n"
+           "man (the manual page), version, and the name of a generated plant\n");
     return STATUS_OK;
 }
 
@@ -88,6 +83,8 @@ static int topic_print(const char *topic)
     }
     if (!strcmp(topic, "man"))
         return man_page();
+    if (!strcmp(topic, "methods"))
+        return methods_page();
     if (!strcmp(topic, "version")) {
         printf("treeline %s\n", TREELINE_REVISION);
         return STATUS_OK;
@@ -127,7 +124,7 @@ int verb_help(int argc, char **argv)
     const struct argp argp = {
         NULL,
         parse,
-        "[VERB|METHOD|PLANT|plan|exit|man|version]",
+        "[VERB|METHOD|PLANT|plan|exit|methods|man|version]",
         "Explains a verb, a method with its options, a plant, the settings of a "
         "plan, or the exit codes.",
         NULL,
