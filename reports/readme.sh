@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
 
 # 1. One forest, traced twice and drawn three ways.
-scene=(--scene poplar-forest --trees 200 --size 480x480 --eye 60,45,95 --target 0,5,0)
+scene=(--scene poplar-forest --trees 200 --size 360x360 --eye 60,45,95 --target 0,5,0)
 ./treeline reference -q "${scene[@]}" --standard-error 0.005 -o "$work/1.png"
 ./treeline reference -q "${scene[@]}" --effects two-sided,ambient --standard-error 0.005 -o "$work/2.png"
 for m in 3:polygons:samples=4 4:billboards:layout=hemisphere,views=64 5:cross-quads:planes=4; do
@@ -24,7 +24,7 @@ cp "$work/quick/plots/trade-poplar-forest-1000-flip-same.png" "$out/trade.png"
 
 # 3. The tables: a few columns of the report's CSV.
 ./treeline report -q "$growth" --out "$work/growth" 
-cp "$work/growth/plots/$(ls "$work/growth/plots" | grep -E '^fps-.*\.png$' | head -1)" "$out/growth.png"
+cp "$work"/growth/plots/growth-*.png "$out/growth.png"
 python3 - "$quick" "$work/quick/tables/results.csv" "$growth" "$work/growth/tables/results.csv" README.md <<'PY'
 import csv, json, re, sys
 
@@ -33,7 +33,10 @@ def rows(path, keep):
         return [r for r in csv.DictReader(file) if keep(r)]
 
 def number(text):
-    return f"{float(text):.3g}" if text else "-"
+    if not text:
+        return "-"
+    value = float(text)
+    return f"{value:,.0f}" if abs(value) >= 100 else f"{value:.3g}"
 
 def ms(text):
     return number(str(1000 * float(text)))
@@ -61,16 +64,21 @@ def table(rows):
     return "\n".join(lines)
 
 quick, quick_csv, growth, growth_csv, readme = sys.argv[1:]
+def size(rows):
+    return f'{rows[0]["width_px"]} x {rows[0]["height_px"]}'
+
+quick_rows = rows(quick_csv, lambda r: r["scene"] == "poplar-forest" and r["trees"] == "1000")
+growth_rows = rows(growth_csv, lambda r: r["method"] != "null")
 text = f"""<!-- results: made by reports/readme.sh -->
-From `{quick}` ({machine(quick)}), 1,000 poplars at 400 x 300:
+From `{quick}` ({machine(quick)}), 1,000 poplars at {size(quick_rows)}:
 
-{table(rows(quick_csv, lambda r: r["scene"] == "poplar-forest" and r["trees"] == "1000"))}
+{table(quick_rows)}
 
-From `{growth}` ({machine(growth)}), oaks and poplars on hills at 800 x 600, one tree to a million:
+From `{growth}` ({machine(growth)}), oaks and poplars on hills at {size(growth_rows)}, one tree to a million:
 
 ![Frame rate against trees](reports/readme/growth.png)
 
-{table(rows(growth_csv, lambda r: r["method"] != "null"))}
+{table(growth_rows)}
 <!-- end of results -->"""
 whole = open(readme).read()
 whole = re.sub(r"<!-- results:.*<!-- end of results -->", lambda _: text, whole, flags=re.S)
