@@ -1,9 +1,9 @@
 # treeline: two commands are all a user needs, `make bench` and `make check`.
 #
-#   make                 builds ./treeline            config=release|debug|sanitize  CC=gcc|clang
+#   make                 builds ./treeline            config=release|debug|sanitize|thread  CC=gcc|clang
 #   make bench           installs what is missing, builds, runs the quick benchmark, writes the report
 #   make check           every test: units, command line, architecture, gcc and clang, sanitizers, EGL alone
-#   make test            the unit tests of one configuration; make test T=test_option for one
+#   make test            the unit tests of one configuration; make test T="test_gl test_base" for some
 #   make install PREFIX= DESTDIR=      make docs      make format      make lint      make clean
 #   gl=auto|egl|osmesa   which GL back ends to build in; auto takes those that pkg-config finds
 
@@ -32,9 +32,10 @@ WARN := -Wall -Wextra -Wpedantic -Wshadow -Werror
 MODE_release := -O3 -g
 MODE_debug := -O0 -g
 MODE_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+MODE_thread := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
 MODE := $(MODE_$(config))
 ifeq ($(MODE),)
-$(error config=$(config) is not one of release, debug, sanitize)
+$(error config=$(config) is not one of release, debug, sanitize, thread)
 endif
 # -ffp-contract=off: the same forest and the same picture from every compiler.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(WARN) $(MODE) -fPIC -fopenmp -ffp-contract=off -fno-math-errno \
@@ -159,8 +160,9 @@ $(BUILD)/tests/test_cell $(BUILD)/tests/test_plan: | $(PLUGINS)
 plugins: $(PLUGINS)
 
 T ?=
-test: $(if $(T),$(BUILD)/tests/$(T),$(TESTS)) all
-	@tests/run.sh $(if $(T),$(BUILD)/tests/$(T),$(TESTS))
+CHOSEN := $(if $(T),$(T:%=$(BUILD)/tests/%),$(TESTS))
+test: $(CHOSEN) all
+	@tests/run.sh $(CHOSEN)
 
 packages:
 	@.ci/install
@@ -191,8 +193,11 @@ FORMAT := $(shell git ls-files '*.c' '*.h' '*.cpp' 2>/dev/null)
 format:
 	clang-format -i $(FORMAT)
 
-lint: all
-	clang-tidy --quiet $(filter harness/% methods/%,$(SOURCES)) -- $(CFLAGS_ALL)
+lint:
+	@.ci/install lint
+	@$(MAKE) --no-print-directory all
+	clang-format --dry-run -Werror $(FORMAT)
+	clang-tidy --quiet --warnings-as-errors='*' $(filter harness/% methods/%,$(SOURCES)) -- $(filter-out -MMD -MP,$(CFLAGS_ALL))
 	cppcheck --quiet --error-exitcode=1 --enable=warning,portability --inline-suppr \
 	    --suppress=missingIncludeSystem -Iharness -I$(GEN) harness methods
 

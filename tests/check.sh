@@ -38,9 +38,9 @@ part gcc build all
 part architecture tests/architecture.sh
 part units make -s -j"$jobs" test
 part sanitize make -s -j"$jobs" CC=clang config=sanitize test
+part threads make -s -j"$jobs" CC=clang config=thread test T="test_metrics test_reference test_reference_noise"
 part clang build CC=clang all
-part egl make -s -j"$jobs" gl=egl test T=test_gl
-part egl-methods make -s -j"$jobs" gl=egl test T=test_methods
+part egl make -s -j"$jobs" gl=egl test T="test_gl test_methods"
 part cli tests/cli.sh
 part smoke tests/smoke.sh
 part page tests/page.sh

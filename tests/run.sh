@@ -9,6 +9,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
 export OMP_WAIT_POLICY=passive # threads that spin take the cores of whatever runs beside
 export UBSAN_OPTIONS="print_stacktrace=1"
+# Embree, OpenImageIO and Mesa are not built for the thread sanitizer; libomp tells it of our own threads.
+export TSAN_OPTIONS="ignore_noninstrumented_modules=1"
 export TREELINE_DATA="${TREELINE_DATA:-$(dirname "$here")}"
 for program in "$@"; do
   started=$(date +%s)
