@@ -208,8 +208,7 @@ static void test_methods__one_pixel_and_odd_sizes_are_drawn(void **unused)
     static const int sizes[][2] = {{1, 1}, {17, 1}, {1, 23}, {33, 47}};
     EACH_METHOD(m)
     for (size_t k = 0; k < 4; k++) {
-        float *rgba =
-            draw_once(*m, 1, sizes[k][0], sizes[k][1], TARGET_RGBA16F, EFFECTS_ALL, NULL);
+        float *rgba = draw_once(*m, 1, sizes[k][0], sizes[k][1], TARGET_RGBA16F, EFFECTS_ALL, NULL);
         for (int i = 0; i < sizes[k][0] * sizes[k][1] * 4; i++)
             assert_true(isfinite(rgba[i]) && rgba[i] < 50);
         free(rgba);
@@ -313,7 +312,8 @@ static void test_methods__device_memory_is_declared(void **unused)
                         target_bytes + (is_null(*m) ? 0 : 1000));
             size_t before = gl_device_bytes(stage.workspace.gl);
             free(stage_draw(&stage, &view));
-            assert_int_equal(gl_device_bytes(stage.workspace.gl), before); /* a still frame leaks nothing */
+            assert_int_equal(gl_device_bytes(stage.workspace.gl),
+                             before); /* a still frame leaks nothing */
         }
         stage_close(&stage);
     }

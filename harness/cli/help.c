@@ -70,7 +70,8 @@ static int topics_print(void)
     printf("\nmethods (`treeline help METHOD`):\n");
     for (const struct method *const *each = methods_builtin; *each; each++)
         printf("  %-14s%s\n", (*each)->name, (*each)->summary);
-    printf("\nother topics: plan (settings of a plan), exit (exit codes), methods (all of them, as Markdown),\n"
+    printf("\nother topics: plan (settings of a plan), exit (exit codes), methods (all of them, as "
+           "Markdown),\n"
            "man (the manual page), version, and the name of a generated plant\n");
     return STATUS_OK;
 }

@@ -48,10 +48,11 @@ static void method_print(const struct method *method)
 
 int methods_page(void)
 {
-    printf("# Methods\n\nMade by `treeline help methods` (`make docs`); do not edit. How to add one: "
-           "[CONTRIBUTING.md](../CONTRIBUTING.md).\n\nAn option is written behind the name, and a "
-           "list sweeps it: `--method billboards:views=8,16,alpha=test`.\n\n"
-           "| method | summary |\n|---|---|\n");
+    printf(
+        "# Methods\n\nMade by `treeline help methods` (`make docs`); do not edit. How to add one: "
+        "[CONTRIBUTING.md](../CONTRIBUTING.md).\n\nAn option is written behind the name, and a "
+        "list sweeps it: `--method billboards:views=8,16,alpha=test`.\n\n"
+        "| method | summary |\n|---|---|\n");
     for (const struct method *const *each = methods_builtin; *each; each++)
         printf("| [%s](#%s) | %s |\n", (*each)->name, (*each)->name, (*each)->summary);
     printf("\nEffects that a scene may ask for (`harness/scene/effects.h`); what a method does not "

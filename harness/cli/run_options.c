@@ -35,7 +35,8 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "What to run (lists are separated by commas, and replace the plan's):", 1},
     {"scene", KEY_SCENE, "NAME", 0, "a scene, by name or path; may stand more than once", 1},
     {"method", KEY_METHOD, "NAME[:opt=val,...]", 0,
-     "a method; an option with a list sweeps it: billboards:views=8,16,alpha=test; may stand more "
+     "a method, or names alone with commas; an option with a list sweeps it: "
+     "billboards:views=8,16,alpha=test; may stand more "
      "than once",
      1},
     {"trees", KEY_TREES, "N,...", 0, "tree counts, or standard for the scene's own list", 1},
@@ -113,6 +114,17 @@ static error_t parse_measuring(int key, const char *text, const struct argp_stat
     }
 }
 
+/* Names alone may stand in one list; behind a colon a comma belongs to the options. */
+static void methods_add(struct parsing *parsing, char *text)
+{
+    size_t *count = &parsing->request->plan.methods_count;
+    char *rest = strchr(text, ':') ? NULL : text;
+    if (!rest)
+        parsing->methods[(*count)++] = text;
+    for (char *name; (name = strsep(&rest, ","));)
+        parsing->methods[(*count)++] = name;
+}
+
 static error_t parse_argument(const char *text, const struct argp_state *state,
                               struct parsing *parsing)
 {
@@ -136,7 +148,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         parsing->scenes[plan->scenes_count++] = text;
         return 0;
     case KEY_METHOD:
-        parsing->methods[plan->methods_count++] = text;
+        methods_add(parsing, text);
         return 0;
     case KEY_CELL:
         parsing->cells[plan->cells_count++] = text;
@@ -210,6 +222,9 @@ void run_request_parse(struct arena *arena, int argc, char **argv, struct run_re
         NULL,
         NULL};
     size_t most = (size_t)argc + 1;
+    for (int i = 1; i < argc; i++)
+        for (const char *c = argv[i]; *c; c++)
+            most += *c == ',';
     struct parsing parsing = {
         .request = request,
         .scenes = ARENA_ARRAY(arena, const char *, most),

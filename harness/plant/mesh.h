@@ -1,4 +1,5 @@
-/* The exact geometry of a plant: what the reference traces and what every representation is made from. */
+/* The exact geometry of a plant: what the reference traces and what every representation is made
+ * from. */
 #ifndef TREELINE_PLANT_MESH_H
 #define TREELINE_PLANT_MESH_H
 
@@ -16,16 +17,17 @@ struct texture {
 struct material {
     char *name;
     enum material_kind kind;
-    float albedo[3];                /* linear RGB in [0, 1]; multiplies vertex colours and texture */
-    const struct texture *texture;  /* NULL: none. Wraps; bilinear; a texel is opaque from alpha 0.5 on */
+    float albedo[3]; /* linear RGB in [0, 1]; multiplies vertex colours and texture */
+    const struct texture
+        *texture; /* NULL: none. Wraps; bilinear; a texel is opaque from alpha 0.5 on */
 };
 
 /* A run of triangles of one material. */
 struct mesh_part {
     uint32_t first_triangle, triangles_count;
     uint32_t material;
-    /* Leaves: where each leaf (or needle, or connected piece) begins, as triangle numbers; elements_count + 1
-     * values, the last is first_triangle + triangles_count. Bark: NULL, 0. */
+    /* Leaves: where each leaf (or needle, or connected piece) begins, as triangle numbers;
+     * elements_count + 1 values, the last is first_triangle + triangles_count. Bark: NULL, 0. */
     uint32_t *element_first;
     uint32_t elements_count;
 };
@@ -44,7 +46,7 @@ struct mesh {
     size_t materials_count;
     struct material *materials;
     float minimum_m[3], maximum_m[3]; /* bounding box */
-    float radius_m;                   /* of the smallest cylinder about the +y axis that holds the mesh */
+    float radius_m; /* of the smallest cylinder about the +y axis that holds the mesh */
 };
 
 #endif

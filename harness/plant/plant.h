@@ -12,34 +12,38 @@ struct plant; /* opaque; belongs to an arena */
 extern const char *const plant_generators[];
 
 /* A generated plant: generator's name, its options as text ("height=20,seed=3", NULL: defaults).
- * STATUS_NOT_FOUND with the list of names, STATUS_INVALID from the option table. Nothing is built yet. */
+ * STATUS_NOT_FOUND with the list of names, STATUS_INVALID from the option table. Nothing is built
+ * yet. */
 enum status plant_generated(struct arena *arena, const char *generator, const char *options,
                             struct plant **plant, struct error *error);
 
 struct plant_import {
-    double height_m;       /* 0: keep the file's units as metres; else scale to this height */
-    bool z_up;             /* the file's up axis is +z */
-    const char *leaf;      /* comma-separated name parts of materials that are leaves; NULL: guess by name
-                              (leaf, leaves, foliage, needle, feuille) or by a texture with alpha */
-    const float *leaf_albedo, *bark_albedo; /* 3 floats; NULL: the file's material or vertex colour */
+    double height_m;  /* 0: keep the file's units as metres; else scale to this height */
+    bool z_up;        /* the file's up axis is +z */
+    const char *leaf; /* comma-separated name parts of materials that are leaves; NULL: guess by
+                         name (leaf, leaves, foliage, needle, feuille) or by a texture with alpha */
+    const float *leaf_albedo,
+        *bark_albedo; /* 3 floats; NULL: the file's material or vertex colour */
 };
 
 /* A user's mesh (OBJ, PLY, glTF, GLB through assimp). The file is opened only by plant_mesh. */
 enum status plant_file(struct arena *arena, const char *path, const struct plant_import *import,
                        struct plant **plant, struct error *error);
 
-/* A mesh made by the caller (tests, other rooms); it is used as it is and must outlive the plant. */
+/* A mesh made by the caller (tests, other rooms); it is used as it is and must outlive the plant.
+ */
 struct plant *plant_from_mesh(struct arena *arena, const char *name, const struct mesh *mesh);
 
 const char *plant_name(const struct plant *plant);
 /* The generator's option table for documentation; NULL when the generator is unknown. */
 const struct option *plant_options(const char *generator);
 
-/* The mesh; built at the first call, the same pointer afterwards. The mesh lives in the plant's arena. */
+/* The mesh; built at the first call, the same pointer afterwards. The mesh lives in the plant's
+ * arena. */
 enum status plant_mesh(struct plant *plant, const struct mesh **mesh, struct error *error);
 
-/* Changes when the mesh would change: generator's version and parameters, or the file's bytes. For a file
- * this reads the file (and its textures) once. */
+/* Changes when the mesh would change: generator's version and parameters, or the file's bytes. For
+ * a file this reads the file (and its textures) once. */
 enum status plant_hash(struct plant *plant, uint64_t *hash, struct error *error);
 
 struct plant_cost {
@@ -50,8 +54,9 @@ struct plant_cost {
 };
 struct plant_cost plant_cost(const struct plant *plant);
 
-/* Checks what the rest relies on: finite positions, unit normals, indices in range, parts that tile the
- * triangles, bark before leaves, elements that tile their part; STATUS_INVALID names the first violation. */
+/* Checks what the rest relies on: finite positions, unit normals, indices in range, parts that tile
+ * the triangles, bark before leaves, elements that tile their part; STATUS_INVALID names the first
+ * violation. */
 enum status mesh_check(const struct mesh *mesh, struct error *error);
 /* Recomputes minimum_m, maximum_m and radius_m. */
 void mesh_bounds(struct mesh *mesh);

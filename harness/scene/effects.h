@@ -1,24 +1,24 @@
 /* The effects a scene may ask for and a method may model. Light transport is defined here, once.
  *
- * Radiance toward the eye of a surface point of albedo a (linear RGB), unit normal N, unit directions
- * L to the sun and V to the eye:
+ * Radiance toward the eye of a surface point of albedo a (linear RGB), unit normal N, unit
+ * directions L to the sun and V to the eye:
  *
  *     C = a * (sun * D * S + ambient * O)
  *
- * sun:     scene.sun.radiance, the radiance of a white Lambert surface that faces the sun (irradiance / pi).
- * ambient: scene.ambient, the radiance of a white Lambert surface under the open sky (irradiance / pi);
- *          only with EFFECT_AMBIENT, else 0.
- * D:       bark, terrain: max(0, N.L), N turned to the eye's side (N.V >= 0).
- *          leaf with EFFECT_TWO_SIDED: |N.L| (Senegas 2001, 5.5: max(N.L, -N.L)).
- *          leaf without: max(0, N.L), N turned to the eye's side.
- *          The geometric normal decides which side the eye is on; the shading normal is turned with it.
- * S:       1, or with EFFECT_SUN_SHADOWS the visibility of the sun (a point light at infinity), 0 or 1.
- * O:       1, or with EFFECT_SKY_OCCLUSION the cosine-weighted visible part of the hemisphere around N.
- * Fog (EFFECT_FOG): f C + (1 - f) fog.color, f = exp(-fog.density_per_m * distance to the eye);
- *          the sky is not fogged. Sky: sky_radiance() in scene.h.
+ * sun:     scene.sun.radiance, the radiance of a white Lambert surface that faces the sun
+ * (irradiance / pi). ambient: scene.ambient, the radiance of a white Lambert surface under the open
+ * sky (irradiance / pi); only with EFFECT_AMBIENT, else 0. D:       bark, terrain: max(0, N.L), N
+ * turned to the eye's side (N.V >= 0). leaf with EFFECT_TWO_SIDED: |N.L| (Senegas 2001, 5.5:
+ * max(N.L, -N.L)). leaf without: max(0, N.L), N turned to the eye's side. The geometric normal
+ * decides which side the eye is on; the shading normal is turned with it. S:       1, or with
+ * EFFECT_SUN_SHADOWS the visibility of the sun (a point light at infinity), 0 or 1. O:       1, or
+ * with EFFECT_SKY_OCCLUSION the cosine-weighted visible part of the hemisphere around N. Fog
+ * (EFFECT_FOG): f C + (1 - f) fog.color, f = exp(-fog.density_per_m * distance to the eye); the sky
+ * is not fogged. Sky: sky_radiance() in scene.h.
  *
- * A pixel is the mean over its square (box filter, 1 px). Alpha is the fraction of the pixel where a plant
- * is the first thing seen. Everything is linear RGB; alpha-tested texels are opaque from 0.5 on. */
+ * A pixel is the mean over its square (box filter, 1 px). Alpha is the fraction of the pixel where
+ * a plant is the first thing seen. Everything is linear RGB; alpha-tested texels are opaque from
+ * 0.5 on. */
 #ifndef TREELINE_SCENE_EFFECTS_H
 #define TREELINE_SCENE_EFFECTS_H
 

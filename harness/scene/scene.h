@@ -17,8 +17,8 @@ bool lod_from_word(const char *word, enum lod *lod);
 struct species {
     const char *name;
     struct plant *plant;
-    float weight;                 /* share of the trees */
-    float scale_min, scale_max;   /* uniform */
+    float weight;               /* share of the trees */
+    float scale_min, scale_max; /* uniform */
 };
 
 /* One tree. World position = R_y(rotation) * scale * vertex + position. */
@@ -29,20 +29,22 @@ struct instance {
     uint32_t species;
 };
 
-/* A regular height field centred on the origin, or nothing (samples_x == 0). Quad (i, j) is cut along the
- * diagonal from (i, j) to (i+1, j+1). terrain_mesh() below is the surface that everybody draws and traces. */
+/* A regular height field centred on the origin, or nothing (samples_x == 0). Quad (i, j) is cut
+ * along the diagonal from (i, j) to (i+1, j+1). terrain_mesh() below is the surface that everybody
+ * draws and traces. */
 struct terrain {
     uint32_t samples_x, samples_z; /* vertices along x and z, >= 2 */
     float size_x_m, size_z_m;
-    float *heights_m;              /* samples_z x samples_x */
-    float (*normals)[3];           /* samples_z x samples_x, unit, central differences on both axes */
+    float *heights_m;    /* samples_z x samples_x */
+    float (*normals)[3]; /* samples_z x samples_x, unit, central differences on both axes */
     float albedo[3];
 };
 
 struct sun {
     float azimuth_rad;   /* 0 is toward +z, grows toward +x */
     float elevation_rad; /* 0 horizon, pi/2 zenith */
-    float end_azimuth_rad, end_elevation_rad; /* at the end of the camera path; equal: the sun stands still */
+    float end_azimuth_rad,
+        end_elevation_rad; /* at the end of the camera path; equal: the sun stands still */
     float radiance[3];
 };
 
@@ -61,11 +63,11 @@ struct camera_key {
     float eye_m[3], target_m[3];
 };
 
-/* Keys already in metres (JSON may give them in units of the forest's half side). still: 1 key; orbit: 1 key, the
- * eye turns around the target by turn_rad; walk, fly-over, approach: straight from first to last key (approach in
- * equal ratios of distance to the target; walk keeps the eye's height above the ground, which changes evenly
- * from the first key's to the last's); keys: Catmull-Rom through all. clearance_m keeps the eye above the
- * terrain. */
+/* Keys already in metres (JSON may give them in units of the forest's half side). still: 1 key;
+ * orbit: 1 key, the eye turns around the target by turn_rad; walk, fly-over, approach: straight
+ * from first to last key (approach in equal ratios of distance to the target; walk keeps the eye's
+ * height above the ground, which changes evenly from the first key's to the last's); keys:
+ * Catmull-Rom through all. clearance_m keeps the eye above the terrain. */
 struct camera_path {
     enum path_kind kind;
     size_t keys_count;
@@ -94,19 +96,21 @@ struct scene {
     struct fog fog;
     struct camera_path camera;
     float minimum_m[3], maximum_m[3]; /* of terrain and feet; trees rise above */
-    float tree_reach_m; /* no tree's vertex is farther from its foot, by the species' reach_m in scene.json */
-    uint64_t hash; /* of all that can change a picture except effects, view and size: placement, plants (by
-                      parameters or file bytes), terrain, light, sky, fog */
+    float tree_reach_m; /* no tree's vertex is farther from its foot, by the species' reach_m in
+                           scene.json */
+    uint64_t hash; /* of all that can change a picture except effects, view and size: placement,
+                      plants (by parameters or file bytes), terrain, light, sky, fog */
 };
 
 struct scene_request {
-    size_t trees;          /* SIZE_MAX: the scene's default */
-    uint64_t seed;         /* placement */
+    size_t trees;            /* SIZE_MAX: the scene's default */
+    uint64_t seed;           /* placement */
     int width_px, height_px; /* 0: the scene's default */
 };
 
-/* name: "tiny" (scenes/tiny.json in data_folder()) or a path that ends in .json. Unknown keys, wrong types and
- * values out of range are STATUS_INVALID with "FILE: key.path: value is ...; allowed: ...". */
+/* name: "tiny" (scenes/tiny.json in data_folder()) or a path that ends in .json. Unknown keys,
+ * wrong types and values out of range are STATUS_INVALID with "FILE: key.path: value is ...;
+ * allowed: ...". */
 enum status scene_load(struct arena *arena, const char *name, const struct scene_request *request,
                        struct scene **scene, struct error *error);
 
@@ -140,16 +144,18 @@ struct view {
 void view_at(const struct scene *scene, double time, struct view *view);
 /* The time of frame k of n: k / n on a closed orbit, k / (n - 1) elsewhere, 0 when n is 1. */
 double path_time(const struct scene *scene, size_t frame, size_t frames_count);
-/* An arbitrary camera (tests, `render --eye --target`), the sun as at time 0. near and far are the path's, or farther
- * apart where this view needs it. Looking straight down, the picture's top is -z; straight up, +z. */
+/* An arbitrary camera (tests, `render --eye --target`), the sun as at time 0. near and far are the
+ * path's, or farther apart where this view needs it. Looking straight down, the picture's top is
+ * -z; straight up, +z. */
 void view_look_at(const struct scene *scene, const float eye_m[3], const float target_m[3],
                   struct view *view);
 
-/* Unit direction of the ray through image point (x, y) in pixels, origin at the top left corner of the picture. */
+/* Unit direction of the ray through image point (x, y) in pixels, origin at the top left corner of
+ * the picture. */
 void view_ray(const struct view *view, float x_px, float y_px, float direction[3]);
 
-/* The sky in a unit direction; below the horizon the ground colour. Continuous, monotone in direction.y:
- * y >= 0: mix(horizon, zenith, sqrt(y)); y < 0: mix(horizon, ground, min(1, -8 y)). */
+/* The sky in a unit direction; below the horizon the ground colour. Continuous, monotone in
+ * direction.y: y >= 0: mix(horizon, zenith, sqrt(y)); y < 0: mix(horizon, ground, min(1, -8 y)). */
 static inline void sky_radiance(const struct sky *sky, const float direction[3], float radiance[3])
 {
     float y = direction[1];

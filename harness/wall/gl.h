@@ -1,4 +1,5 @@
-/* OpenGL 4.5 core behind one small context: OSMesa and EGL (surfaceless, device) as equal back ends. */
+/* OpenGL 4.5 core behind one small context: OSMesa and EGL (surfaceless, device) as equal back
+ * ends. */
 #ifndef TREELINE_WALL_GL_H
 #define TREELINE_WALL_GL_H
 
@@ -15,12 +16,12 @@ struct gl_counters {
 /* All of OpenGL 4.5 core as function pointers (gl->Clear), from the system's glcorearb.h, and the
  * books of one context. Everything made through gl_* dies with gl_context_destroy. */
 struct gl {
-#include "gl_functions.inc" /* generated: PFNGLCLEARPROC Clear; ... */
-    struct gl_books *books;     /* private to gl.c */
-    const char *backend;        /* "osmesa", "egl-surfaceless", "egl-device" */
+#include "gl_functions.inc"                  /* generated: PFNGLCLEARPROC Clear; ... */
+    struct gl_books *books;                  /* private to gl.c */
+    const char *backend;                     /* "osmesa", "egl-surfaceless", "egl-device" */
     const char *vendor, *renderer, *version; /* GL strings */
-    int samples_max;            /* GL_MAX_SAMPLES */
-    bool software;              /* llvmpipe, softpipe, swrast */
+    int samples_max;                         /* GL_MAX_SAMPLES */
+    bool software;                           /* llvmpipe, softpipe, swrast */
     bool has_timer, has_pipeline_statistics;
     struct gl_counters counters; /* since gl_counters_reset */
 };
@@ -28,9 +29,10 @@ struct gl {
 /* Back ends built in, best first, ends with NULL. */
 extern const char *const gl_backends[];
 
-/* backend: a name from gl_backends, or NULL: $TREELINE_GL, else an EGL device that is a GPU, else OSMesa, else EGL
- * surfaceless, else EGL's software device. threads: for llvmpipe (LP_NUM_THREADS; set before the first
- * context of a process), 0: all. STATUS_UNAVAILABLE says what each back end answered. */
+/* backend: a name from gl_backends, or NULL: $TREELINE_GL, else an EGL device that is a GPU, else
+ * OSMesa, else EGL surfaceless, else EGL's software device. threads: for llvmpipe (LP_NUM_THREADS;
+ * set before the first context of a process), 0: all. STATUS_UNAVAILABLE says what each back end
+ * answered. */
 enum status gl_context_create(const char *backend, int threads, struct gl **gl,
                               struct error *error);
 void gl_context_destroy(struct gl *gl);
@@ -52,10 +54,11 @@ GLuint gl_vertex_array(struct gl *gl);
 void gl_delete_buffer(struct gl *gl, GLuint buffer);
 void gl_delete_texture(struct gl *gl, GLuint texture);
 
-/* source: one text with the stages after lines "#pragma stage vertex", "#pragma stage fragment" (also geometry,
- * tess_control, tess_evaluation, compute); what stands before the first goes to every stage. "#version 450 core",
- * the defines ("NAME VALUE\n..." lines, NULL: none) and the shared chunk bake/shade.glsl are put in front.
- * Compile and link errors are STATUS_GL with name, stage, line and the driver's first message. */
+/* source: one text with the stages after lines "#pragma stage vertex", "#pragma stage fragment"
+ * (also geometry, tess_control, tess_evaluation, compute); what stands before the first goes to
+ * every stage. "#version 450 core", the defines ("NAME VALUE\n..." lines, NULL: none) and the
+ * shared chunk bake/shade.glsl are put in front. Compile and link errors are STATUS_GL with name,
+ * stage, line and the driver's first message. */
 enum status gl_program(struct gl *gl, const char *name, const char *source, const char *defines,
                        GLuint *program, struct error *error);
 /* A uniform's location; -1 for one that the compiler removed (setting it does nothing). */
@@ -65,8 +68,8 @@ GLint gl_uniform(struct gl *gl, GLuint program, const char *name);
 void gl_draw_arrays(struct gl *gl, GLenum mode, GLint first, GLsizei count, GLsizei instances);
 void gl_draw_elements(struct gl *gl, GLenum mode, GLsizei count, GLenum type, size_t offset_bytes,
                       GLsizei instances, GLint base_vertex, GLuint base_instance);
-/* count commands of DrawElementsIndirectCommand in the bound GL_DRAW_INDIRECT_BUFFER; triangles is what
- * they add up to (the caller filled them). */
+/* count commands of DrawElementsIndirectCommand in the bound GL_DRAW_INDIRECT_BUFFER; triangles is
+ * what they add up to (the caller filled them). */
 void gl_multi_draw_elements_indirect(struct gl *gl, GLenum mode, GLenum type, size_t offset_bytes,
                                      GLsizei count, uint64_t triangles);
 void gl_counters_reset(struct gl *gl);
@@ -80,9 +83,10 @@ GLenum target_format_gl(enum target_format format);
 struct target {
     int width_px, height_px;
     enum target_format format;
-    GLuint framebuffer; /* color texture of the format and a 32-bit float depth; 0 for a CPU method */
+    GLuint
+        framebuffer; /* color texture of the format and a 32-bit float depth; 0 for a CPU method */
     GLuint color, depth; /* textures */
-    float *pixels;      /* CPU methods: height x width x 4, row 0 on top; else NULL */
+    float *pixels;       /* CPU methods: height x width x 4, row 0 on top; else NULL */
 };
 enum status gl_target(struct gl *gl, int width_px, int height_px, enum target_format format,
                       struct target *target, struct error *error);
@@ -94,7 +98,8 @@ void gl_target_resolve(struct gl *gl, const struct target *multisampled,
 /* Reads a target as float RGBA, row 0 on top. Not timed with the drawing. */
 void gl_target_read(struct gl *gl, const struct target *target, float *rgba);
 
-/* Fragments, primitives and vertices of the draws between begin and end; zeros where not supported. */
+/* Fragments, primitives and vertices of the draws between begin and end; zeros where not supported.
+ */
 struct gl_statistics {
     uint64_t vertices, primitives, fragments;
 };

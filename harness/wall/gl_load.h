@@ -12,8 +12,9 @@ struct gl_entry {
 };
 extern const struct gl_entry gl_entries[]; /* ends with a NULL name */
 
-/* Back ends load their library with dlopen when they are first asked: one binary runs where either is absent,
- * a process that draws nothing pays for neither, and a CPU method's peak memory holds no LLVM. */
+/* Back ends load their library with dlopen when they are first asked: one binary runs where either
+ * is absent, a process that draws nothing pays for neither, and a CPU method's peak memory holds no
+ * LLVM. */
 struct gl_backend {
     const char *name;
     /* Makes a GL 4.5 core context current on this thread. STATUS_UNAVAILABLE with the reason.
@@ -30,7 +31,13 @@ void *gl_library(const char *const *names, struct error *error);
 void (*gl_symbol(void *library, const char *name))(void);
 
 /* The books of one context (gl_objects.c). */
-enum gl_kind { GL_KIND_BUFFER, GL_KIND_TEXTURE, GL_KIND_FRAMEBUFFER, GL_KIND_VERTEX_ARRAY, GL_KIND_PROGRAM };
+enum gl_kind {
+    GL_KIND_BUFFER,
+    GL_KIND_TEXTURE,
+    GL_KIND_FRAMEBUFFER,
+    GL_KIND_VERTEX_ARRAY,
+    GL_KIND_PROGRAM
+};
 struct gl_object {
     enum gl_kind kind;
     GLuint name;
