@@ -199,9 +199,8 @@ void backdrop_draw(struct workspace *workspace, struct backdrop *backdrop, const
     gl->DepthFunc(GL_LESS);
     gl->DepthMask(GL_TRUE);
     gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    gl->ClearColor(0, 0, 0, 0);
     gl->ClearDepth(1);
-    gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl->Clear(GL_DEPTH_BUFFER_BIT); /* terrain and sky reach every pixel's colour */
     draw_terrain(workspace, backdrop, view);
     draw_sky(workspace, backdrop, view);
 }
