@@ -9,12 +9,14 @@
 #include <math.h>
 #include <string.h>
 
-/* The pictures of a repetition with the references they are compared with. */
+/* The sums over the pictures of a repetition. */
 struct album {
-    size_t count, compared;
-    const struct frame **pictures, **references;
+    size_t count;
     uint64_t draw_calls, triangles;
     struct gl_statistics statistics;
+    size_t pairs; /* of a picture and the path's next one, both compared */
+    double flicker_squared, flicker_variance, flicker_worst;
+    size_t flicker_view;
 };
 
 static const char *picture_name(struct arena *arena, const struct cell *cell, size_t view)
@@ -83,9 +85,10 @@ static enum status picture_draw(struct stage *stage, const struct view *view, st
 /* The reference from the run's folder; without a folder through the cache. NULL with a note when
  * there is none. */
 static const struct frame *reference_find(struct stage *stage, const struct view *view,
-                                          unsigned effects, uint64_t *key)
+                                          unsigned effects, bool neighbour, uint64_t *key)
 {
-    struct reference_options options = stage_reference_options(stage->plan, stage->cell, effects);
+    struct reference_options options =
+        stage_reference_options(stage->plan, stage->cell, effects, neighbour);
     struct error why = {0};
     struct frame *frame = NULL;
     *key = reference_key(stage->scene, view, &options);
@@ -123,11 +126,12 @@ static enum status picture_compare(struct stage *stage, const struct view *view,
                                    const struct frame **reference)
 {
     struct result *whole = stage->result;
-    const struct frame *same = reference_find(stage, view, whole->effects, &result->same_key);
+    const struct frame *same =
+        reference_find(stage, view, whole->effects, false, &result->same_key);
     const struct frame *full = same;
     result->full_key = result->same_key;
     if (whole->effects != whole->scene_effects)
-        full = reference_find(stage, view, whole->scene_effects, &result->full_key);
+        full = reference_find(stage, view, whole->scene_effects, false, &result->full_key);
     *reference = same;
     if (!same || !full)
         return STATUS_OK;
@@ -143,10 +147,47 @@ static enum status picture_compare(struct stage *stage, const struct view *view,
     return status;
 }
 
+/* The path's next frame as well, and how the change from this one to it differs from the
+ * references' change. */
+static enum status picture_flicker(struct stage *stage, size_t index, const struct frame *picture,
+                                   const struct frame *reference, struct album *album)
+{
+    struct album unused = {0};
+    struct view view;
+    struct frame *next;
+    uint64_t key;
+    stage_announce(stage, "a picture's neighbour");
+    view_at(stage->scene, stage_neighbour_time(stage->scene, stage->result->views[index].time),
+            &view);
+    enum status status = picture_draw(stage, &view, &unused, &next);
+    if (status)
+        return error_context(stage->error, "the neighbour of picture %zu", index);
+    const struct frame *frames[2] = {picture, next};
+    const struct frame *references[2] = {
+        reference, reference_find(stage, &view, stage->result->effects, true, &key)};
+    if (!references[1])
+        return STATUS_OK;
+    struct flicker pair;
+    struct arena *arena = arena_create(0);
+    status = metrics_flicker(arena, frames, references, 2, &pair, stage->error);
+    arena_destroy(arena);
+    if (status)
+        return status;
+    album->pairs++;
+    album->flicker_squared += pair.mean * pair.mean;
+    album->flicker_variance += pair.floor * pair.floor;
+    if (pair.peak > album->flicker_worst) {
+        album->flicker_worst = pair.peak;
+        album->flicker_view = index;
+    }
+    return STATUS_OK;
+}
+
 static enum status view_picture(struct stage *stage, size_t index, size_t count,
                                 struct album *album)
 {
     struct result_view *result = &stage->result->views[index];
+    const struct frame *reference = NULL;
     struct view view;
     struct frame *frame;
     result->time = path_time(stage->scene, index, count);
@@ -165,22 +206,22 @@ static enum status view_picture(struct stage *stage, size_t index, size_t count,
     }
     stage_announce(stage, "comparing a picture");
     if (!status)
-        status = picture_compare(stage, &view, frame, result, &album->references[index]);
-    album->pictures[index] = frame;
-    album->compared += result->compared;
+        status = picture_compare(stage, &view, frame, result, &reference);
+    if (!status && result->compared && stage_path_frames(stage->scene) > 1)
+        status = picture_flicker(stage, index, frame, reference, album);
     return status;
 }
 
-static enum status album_flicker(struct stage *stage, const struct album *album)
+static void album_flicker(struct result *result, const struct album *album)
 {
-    if (album->count < 2 || album->compared < album->count)
-        return STATUS_OK;
-    struct arena *arena = arena_create(0);
-    enum status status = metrics_flicker(arena, album->pictures, album->references, album->count,
-                                         &stage->result->flicker, stage->error);
-    arena_destroy(arena);
-    stage->result->has_flicker = !status;
-    return status;
+    result->has_flicker = album->count && album->pairs == album->count;
+    if (!result->has_flicker)
+        return;
+    double pairs = (double)album->pairs;
+    result->flicker = (struct flicker){.mean = sqrt(album->flicker_squared / pairs),
+                                       .peak = album->flicker_worst,
+                                       .floor = sqrt(album->flicker_variance / pairs),
+                                       .peak_frame = album->flicker_view};
 }
 
 static void album_counts(struct result *result, const struct album *album, bool statistics)
@@ -232,8 +273,6 @@ enum status stage_pictures(struct stage *stage)
             return picture_again(stage, before);
     }
     struct album album = {.count = stage_views_count(stage->scene, stage->plan->views_count)};
-    album.pictures = ARENA_ARRAY(arena, const struct frame *, album.count);
-    album.references = ARENA_ARRAY(arena, const struct frame *, album.count);
     result->views_count = album.count;
     result->views = ARENA_ARRAY(stage->result_arena, struct result_view, album.count);
     enum status status = STATUS_OK;
@@ -243,5 +282,7 @@ enum status stage_pictures(struct stage *stage)
         status = view_picture(stage, i, album.count, &album);
     if (!status && stage->gl)
         album_counts(result, &album, stage->gl->has_pipeline_statistics);
-    return status ? status : album_flicker(stage, &album);
+    if (!status)
+        album_flicker(result, &album);
+    return status;
 }

@@ -22,6 +22,7 @@ struct shoot {
     uint64_t key;
     size_t effects_count;
     unsigned effects[2 * 32]; /* distinct sets */
+    bool drawn[2 * 32];       /* by a method: its flicker needs the neighbouring frames too */
 };
 
 static uint64_t shoot_key(const struct cell *cell)
@@ -33,13 +34,16 @@ static uint64_t shoot_key(const struct cell *cell)
     return hash_u64(hash, (uint64_t)cell->height_px);
 }
 
-static void shoot_want(struct shoot *shoot, unsigned effects)
+static void shoot_want(struct shoot *shoot, unsigned effects, bool drawn)
 {
-    for (size_t i = 0; i < shoot->effects_count; i++)
-        if (shoot->effects[i] == effects)
-            return;
-    if (shoot->effects_count < sizeof shoot->effects / sizeof *shoot->effects)
+    size_t i = 0;
+    while (i < shoot->effects_count && shoot->effects[i] != effects)
+        i++;
+    if (i == sizeof shoot->effects / sizeof *shoot->effects)
+        return;
+    if (i == shoot->effects_count)
         shoot->effects[shoot->effects_count++] = effects;
+    shoot->drawn[i] |= drawn;
 }
 
 /* The distinct shoots of a plan; their effects by the scene's wishes and the methods' traits. */
@@ -63,17 +67,20 @@ static enum status shoots_list(struct arena *arena, const struct plan *plan, con
         enum status status = scene_summary(arena, cell->scene, &summary, error);
         if (status)
             return status;
-        shoot_want(shoot, stage_effects(cell->method, summary.effects));
-        shoot_want(shoot, summary.effects);
+        shoot_want(shoot, stage_effects(cell->method, summary.effects), true);
+        shoot_want(shoot, summary.effects, false);
     }
     return STATUS_OK;
 }
 
 static enum status reference_make(struct arena *arena, const struct shoot *shoot,
-                                  const struct scene *scene, const struct view *view,
-                                  unsigned effects, struct error *error)
+                                  const struct scene *scene, double time, unsigned effects,
+                                  bool neighbour, struct error *error)
 {
-    struct reference_options options = stage_reference_options(shoot->plan, shoot->cell, effects);
+    struct view along, *view = &along;
+    view_at(scene, neighbour ? stage_neighbour_time(scene, time) : time, view);
+    struct reference_options options =
+        stage_reference_options(shoot->plan, shoot->cell, effects, neighbour);
     const char *path =
         stage_reference_path(arena, shoot->folder, reference_key(scene, view, &options));
     if (file_exists(path))
@@ -99,11 +106,15 @@ static enum status shoot_work(void *context, int out)
     enum status status = scene_load(arena, cell->scene, &request, &scene, &error);
     size_t views = status ? 0 : stage_views_count(scene, shoot->plan->views_count);
     size_t total = views * shoot->effects_count;
+    bool moves = !status && stage_path_frames(scene) > 1;
     for (size_t i = 0; i < total && !status; i++) {
         struct arena *scratch = arena_create(0);
-        struct view view;
-        view_at(scene, path_time(scene, i % views, views), &view);
-        status = reference_make(scratch, shoot, scene, &view, shoot->effects[i / views], &error);
+        double time = path_time(scene, i % views, views);
+        size_t set = i / views;
+        unsigned effects = shoot->effects[set];
+        status = reference_make(scratch, shoot, scene, time, effects, false, &error);
+        if (!status && moves && shoot->drawn[set])
+            status = reference_make(scratch, shoot, scene, time, effects, true, &error);
         arena_destroy(scratch);
         dprintf(out, "%.6f\n", (double)(i + 1) / (double)total);
     }

@@ -258,15 +258,21 @@ size_t stage_views_count(const struct scene *scene, size_t wanted)
     return wanted < frames ? wanted : frames;
 }
 
+double stage_neighbour_time(const struct scene *scene, double time)
+{
+    double step = 1 / fmax(1, (double)stage_path_frames(scene) - 1);
+    return time + step <= 1 + 1e-9 ? time + step : time - step;
+}
+
 struct reference_options stage_reference_options(const struct plan *plan, const struct cell *cell,
-                                                 unsigned effects)
+                                                 unsigned effects, bool neighbour)
 {
     return (struct reference_options){
         .effects = effects,
         .standard_error = (float)plan->reference_error,
         .samples_max = plan->reference_samples_max,
         .threads = plan->threads,
-        .seed = cell->seed,
+        .seed = cell->seed + neighbour,
         .quiet = true,
     };
 }

@@ -42,6 +42,8 @@ enum status stage_check(struct stage *stage, const char *where);
 /* Pictures along the path: 1 when neither camera nor sun moves. */
 size_t stage_path_frames(const struct scene *scene);
 size_t stage_views_count(const struct scene *scene, size_t wanted);
+/* The time of the path's next frame, or of the one before at the path's end; for flicker. */
+double stage_neighbour_time(const struct scene *scene, double time);
 
 /* The passes, in this order. */
 enum status stage_time(struct stage *stage);
@@ -49,9 +51,10 @@ enum status stage_relight(struct stage *stage);
 enum status stage_pictures(struct stage *stage);
 enum status stage_build_cold(struct stage *stage);
 
-/* What every reference of a plan is asked for. */
+/* What every reference of a plan is asked for. neighbour: for the neighbouring frame, with noise of
+ * its own, since flicker takes the noise of the two as independent. */
 struct reference_options stage_reference_options(const struct plan *plan, const struct cell *cell,
-                                                 unsigned effects);
+                                                 unsigned effects, bool neighbour);
 /* RUN/references/KEY.frame */
 const char *stage_reference_path(struct arena *arena, const char *folder, uint64_t key);
 /* Effects that a cell draws of those its scene asks for. */

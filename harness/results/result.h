@@ -68,7 +68,7 @@ struct result {
     size_t views_count;
     struct result_view *views;
     bool has_flicker;
-    struct flicker flicker; /* over the compared views, same effects */
+    struct flicker flicker; /* from each compared view to the path's next frame, same effects */
 };
 
 /* A result about which nothing is known yet: columns NaN, texts "", status ok. */
