@@ -24,10 +24,14 @@ static const struct option table[] = {
 };
 /* clang-format on */
 
+/* Up to this many pixels whole planes are blended, though each hides a part of the others: that
+ * errs where two of them cover, by the difference of their colours, and halves the quads. */
+static const float whole_area_px = 1000;
+
 struct state {
     struct impostor *impostor;
-    GLuint program;
-    size_t planes, quads_each;
+    GLuint wholes, halves; /* halves: 0 where nothing is blended */
+    size_t planes;
 };
 
 /* The level of detail is the pictures' resolution. */
@@ -52,30 +56,41 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .depth = options->depth,
     };
     state->planes = (size_t)options->planes;
-    state->quads_each = halves ? 2 * state->planes : state->planes;
-    enum status status =
-        impostor_prepare(workspace, scene, &request, state->quads_each, &state->impostor);
-    if (status != STATUS_OK)
-        return status;
-    return impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
-                            halves ? "VIEWS 1\nHALVES 1\n" : "VIEWS 1\nHALVES 0\n",
-                            &state->program);
+    enum status status = impostor_prepare(workspace, scene, &request,
+                                          (halves ? 2 : 1) * state->planes, &state->impostor);
+    if (status == STATUS_OK)
+        status = impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
+                                  "VIEWS 1\nHALVES 0\n", &state->wholes);
+    if (status == STATUS_OK && halves)
+        status = impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
+                                  "VIEWS 1\nHALVES 1\n", &state->halves);
+    return status;
+}
+
+static void draw_trees(struct workspace *workspace, const struct state *state,
+                       const struct view *view, GLuint program, size_t first, size_t count)
+{
+    if (count == 0)
+        return;
+    impostor_use(workspace, state->impostor, program, view, first);
+    workspace->gl->Uniform1i(gl_uniform(workspace->gl, program, "planes"), (GLint)state->planes);
+    impostor_draw(workspace, state->impostor, 4,
+                  count * state->planes * (program == state->halves ? 2 : 1));
 }
 
 static enum status draw(struct workspace *workspace, void *own, const struct view *view,
                         struct target *target)
 {
     struct state *state = own;
-    struct gl *gl = workspace->gl;
     struct cull_list list;
     enum status status = impostor_begin(workspace, state->impostor, view, target, &list);
     if (status != STATUS_OK)
         return status;
-    if (list.count > 0) {
-        impostor_use(workspace, state->impostor, state->program, view, 0);
-        gl->Uniform1i(gl_uniform(gl, state->program, "planes"), (GLint)state->planes);
-        impostor_draw(workspace, state->impostor, 4, list.count * state->quads_each);
-    }
+    size_t near =
+        state->halves ? impostor_near_count(state->impostor, view, &list, whole_area_px) : 0;
+    size_t far = list.count - near;
+    draw_trees(workspace, state, view, state->wholes, 0, far);
+    draw_trees(workspace, state, view, state->halves, far, near);
     return impostor_end(workspace, state->impostor, target, "cross-quads");
 }
 

@@ -1,5 +1,5 @@
 // Vertical planes that cross in a tree's axis. HALVES: each plane is two half planes, sent from the farthest to the
-// nearest, which is the painter's order about a common axis; else whole planes in any order.
+// nearest, which is the painter's order about a common axis; else whole planes, the one that faces the eye most last.
 uniform int planes;
 
 #pragma stage vertex
@@ -14,6 +14,16 @@ int half_plane(vec3 v, int order)
     return (nearest + away + 2 * planes) % (2 * planes);
 }
 
+// Which plane faces the eye the order-th least; plane j's normal points to azimuth pi j / planes.
+int whole_plane(vec3 v, int order)
+{
+    float at = atan(v.x, v.z) / 3.14159265359 * float(planes) + 2.0 * float(planes);
+    int nearest = int(floor(at + 0.5)), rank = planes - 1 - order;
+    int side = at < float(nearest) ? -1 : 1;
+    int away = (rank + 1) / 2 * (rank % 2 == 1 ? side : -side);
+    return (nearest + away + planes) % planes;
+}
+
 void main()
 {
     int quads = HALVES == 1 ? 2 * planes : planes;
@@ -22,7 +32,7 @@ void main()
     tree t = trees[number];
     plant p = plants[int(t.turn.z)];
     vec3 v = to_tree(eye_m - center_of(t, p), t);
-    int j = HALVES == 1 ? half_plane(v, fan % quads) : fan % quads;
+    int j = HALVES == 1 ? half_plane(v, fan % quads) : whole_plane(v, fan % quads);
 
     // The picture of the side that the eye is on; from behind it runs the other way.
     int plane = j % planes;

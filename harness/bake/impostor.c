@@ -131,8 +131,9 @@ enum status impostor_program(struct workspace *workspace, const struct impostor 
     static const char *const modes[] = {"", "STRAIGHT 1\nALPHA_TEST 1\n",
                                         "STRAIGHT 1\nALPHA_COVERAGE 1\n"};
     const char *all =
-        arena_printf(scratch, "%s%s%s", defines ? defines : "", modes[impostor->alpha],
-                     impostor->atlas->depth ? "DEPTH 1\n" : "");
+        arena_printf(scratch, "%s%s%s%s", defines ? defines : "", modes[impostor->alpha],
+                     impostor->atlas->depth ? "DEPTH 1\n" : "",
+                     workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
     enum status status = gl_program(workspace->gl, name, text, all, program, workspace->error);
     arena_destroy(scratch);
     return status;

@@ -35,7 +35,9 @@ out vec4 place[VIEWS];              // texture coordinates, layer, weight
 flat out vec4 light_factors[VIEWS]; // of the four channels
 flat out vec3 light_rest;           // light without channels, of each picture
 flat out vec4 shared_terms;         // albedo scale, level, radius (m, world), quad's number
+#ifdef FOG
 out float clear_share;              // what the fog leaves
+#endif
 
 vec3 to_tree(vec3 v, tree t)
 {
@@ -94,7 +96,9 @@ void set_corner(tree t, plant p, vec3 own, float depth_m, float level, uint numb
     if (gl_Position.w > 0.0 && gl_Position.z > -gl_Position.w)
         gl_Position.z = max(gl_Position.z + depth_terms.y * share / (1.0 - share),
                             -0.99999 * gl_Position.w);
-    clear_share = fog_density > 0.0 ? exp(-fog_density * away * (1.0 - share)) : 1.0;
+#ifdef FOG
+    clear_share = exp(-fog_density * away * (1.0 - share));
+#endif
     shared_terms = vec4(p.albedo.x, level, p.shape.y * t.place.w, float(number));
 }
 
@@ -106,7 +110,9 @@ in vec4 place[VIEWS];
 flat in vec4 light_factors[VIEWS];
 flat in vec3 light_rest;
 flat in vec4 shared_terms;
+#ifdef FOG
 in float clear_share;
+#endif
 layout(location = 0) out vec4 color;
 
 uint scramble(uint x)
@@ -154,10 +160,12 @@ void main()
 #endif
     radiance *= shared_terms.x;
 #ifdef STRAIGHT
-    radiance /= max(coverage, 1e-6);
-    color = vec4(mix(fog_color, radiance, clear_share), 1.0);
+    color = vec4(radiance / max(coverage, 1e-6), 1.0);
 #else
-    color = vec4(mix(fog_color * coverage, radiance, clear_share), coverage);
+    color = vec4(radiance, coverage);
+#endif
+#ifdef FOG
+    color.rgb = mix(fog_color * color.a, color.rgb, clear_share);
 #endif
 #ifdef ALPHA_COVERAGE
     gl_SampleMask[0] = sample_mask(coverage);

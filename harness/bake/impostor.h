@@ -28,7 +28,7 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
                              struct impostor **impostor);
 
 /* Links impostor.glsl and a method's own source; defines may be NULL. Adds ALPHA_TEST,
- * ALPHA_COVERAGE, DEPTH. */
+ * ALPHA_COVERAGE, DEPTH, FOG. */
 enum status impostor_program(struct workspace *workspace, const struct impostor *impostor,
                              const char *name, const char *source, const char *defines,
                              GLuint *program);
