@@ -57,7 +57,7 @@ static void test_cross_quads__light_follows_the_sun_as_the_reference_does(void *
         double cover = tree_mean(drawn, 3) / tree_mean(truth, 3);
         for (int channel = 0; channel < 3; channel++) {
             double ratio = tree_mean(drawn, channel) / tree_mean(truth, channel) / cover;
-            if (fabs(ratio - 1) > 0.1) /* the plane seen edge on adds to it */
+            if (fabs(ratio - 1) > 0.12) /* the plane seen edge on adds to it */
                 fail_msg("sun %d, channel %d: %.4f of the light", k, channel, ratio);
         }
     }

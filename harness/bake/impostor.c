@@ -8,11 +8,22 @@
 /* As impostor.glsl reads it. */
 struct tree {
     float position_m[3], scale;
-    float cos, sin, species, unused;
+    float cos, sin, species, sun_step;
+};
+
+struct sunlight {
+    float factors[4], rest, unused[3];
 };
 
 /* Most trees that are drawn with the polygon of ATLAS_HULL corners at a time. */
-enum { HULLS_MOST = 65536 };
+enum { HULLS_MOST = 65536, BUFFERS = 5 };
+
+/* The nearest of the rotations that light is computed for. */
+static float sun_step(float rotation_rad)
+{
+    double turns = rotation_rad / (2 * M_PI), share = turns - floor(turns);
+    return (float)(lround(share * IMPOSTOR_SUN_STEPS) % IMPOSTOR_SUN_STEPS);
+}
 
 static GLuint upload_trees(struct gl *gl, const struct scene *scene)
 {
@@ -25,7 +36,8 @@ static GLuint upload_trees(struct gl *gl, const struct scene *scene)
                                  .scale = instance->scale,
                                  .cos = cosf(instance->rotation_rad),
                                  .sin = sinf(instance->rotation_rad),
-                                 .species = (float)instance->species};
+                                 .species = (float)instance->species,
+                                 .sun_step = sun_step(instance->rotation_rad)};
     }
     GLuint buffer =
         gl_buffer(gl, (GLsizeiptr)((scene->instances_count + 1) * sizeof *trees), trees, 0);
@@ -95,6 +107,9 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     impostor->instances_buffer = upload_trees(gl, scene);
     impostor->order_buffer =
         gl_buffer(gl, (GLsizeiptr)((count + 1) * sizeof(uint32_t)), NULL, GL_DYNAMIC_STORAGE_BIT);
+    size_t lights = (size_t)impostor->atlas->layers * IMPOSTOR_SUN_STEPS;
+    impostor->sunlights_buffer = gl_buffer(gl, (GLsizeiptr)((lights + 1) * sizeof(struct sunlight)),
+                                           NULL, GL_DYNAMIC_STORAGE_BIT);
     impostor->vertices = gl_vertex_array(gl);
     gl->VertexArrayElementBuffer(impostor->vertices,
                                  upload_indices(gl, impostor->fans_quad, impostor->fans_hull));
@@ -131,8 +146,8 @@ enum status impostor_program(struct workspace *workspace, const struct impostor 
     static const char *const modes[] = {"", "STRAIGHT 1\nALPHA_TEST 1\n",
                                         "STRAIGHT 1\nALPHA_COVERAGE 1\n"};
     const char *all =
-        arena_printf(scratch, "%s%s%s%s", defines ? defines : "", modes[impostor->alpha],
-                     impostor->atlas->depth ? "DEPTH 1\n" : "",
+        arena_printf(scratch, "SUN_STEPS %d\n%s%s%s%s", IMPOSTOR_SUN_STEPS, defines ? defines : "",
+                     modes[impostor->alpha], impostor->atlas->depth ? "DEPTH 1\n" : "",
                      workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
     enum status status = gl_program(workspace->gl, name, text, all, program, workspace->error);
     arena_destroy(scratch);
@@ -155,6 +170,48 @@ static enum status twin(struct workspace *workspace, struct impostor *impostor,
     return gl_target_multisample(workspace->gl, target, 4, twin, workspace->error);
 }
 
+/* What one species' channels give in a picture under a sun in the plant's own axes. */
+static struct sunlight sunlight_of(const struct atlas_species *species,
+                                   const struct atlas_view *view, const float sun[3])
+{
+    const float *axes[3] = {view->right, view->up, view->toward};
+    float s[3], sums[1 + LIGHT_CHANNELS] = {0};
+    for (int i = 0; i < 3; i++)
+        s[i] = axes[i][0] * sun[0] + axes[i][1] * sun[1] + axes[i][2] * sun[2];
+    const float q[LIGHT_TERMS] = {1,           s[0] * s[0], s[1] * s[1], s[2] * s[2], s[0] * s[1],
+                                  s[0] * s[2], s[1] * s[2], s[0],        s[1],        s[2]};
+    for (int k = 0; k <= LIGHT_CHANNELS; k++)
+        for (int i = 0; i < LIGHT_TERMS; i++)
+            sums[k] += species->light[k][i] * q[i];
+    return (struct sunlight){{sums[1], sums[2], sums[3], sums[4]}, sums[0], {0}};
+}
+
+/* Light for all pictures and rotations, when the sun has moved. */
+static void relight(struct impostor *impostor, struct gl *gl, const float sun[3])
+{
+    const struct atlas *atlas = impostor->atlas;
+    if (!memcmp(sun, impostor->sun_direction, sizeof impostor->sun_direction))
+        return;
+    memcpy(impostor->sun_direction, sun, sizeof impostor->sun_direction);
+    struct arena *scratch = arena_create(0);
+    size_t count = (size_t)atlas->layers * IMPOSTOR_SUN_STEPS;
+    struct sunlight *lights = ARENA_ARRAY(scratch, struct sunlight, count + 1);
+    for (size_t i = 0; i < atlas->species_count; i++)
+        for (int step = 0; atlas->species[i].first_view >= 0 && step < IMPOSTOR_SUN_STEPS; step++) {
+            double angle = 2 * M_PI * step / IMPOSTOR_SUN_STEPS;
+            float c = (float)cos(angle), s = (float)sin(angle);
+            const float own[3] = {sun[0] * c - sun[2] * s, sun[1], sun[0] * s + sun[2] * c};
+            for (size_t k = 0; k < atlas->views_count; k++) {
+                size_t layer = (size_t)atlas->species[i].first_view + k;
+                lights[layer * IMPOSTOR_SUN_STEPS + (size_t)step] =
+                    sunlight_of(&atlas->species[i], &atlas->views[layer], own);
+            }
+        }
+    gl->NamedBufferSubData(impostor->sunlights_buffer, 0, (GLsizeiptr)(count * sizeof *lights),
+                           lights);
+    arena_destroy(scratch);
+}
+
 enum status impostor_begin(struct workspace *workspace, struct impostor *impostor,
                            const struct view *view, struct target *target, struct cull_list *list)
 {
@@ -168,6 +225,7 @@ enum status impostor_begin(struct workspace *workspace, struct impostor *imposto
     }
     gl->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     backdrop_draw(workspace, impostor->backdrop, view);
+    relight(impostor, gl, view->sun_direction);
     *list = cull_view(impostor->cull, view,
                       impostor->alpha == ATLAS_BLEND ? CULL_BACK_TO_FRONT : CULL_FRONT_TO_BACK);
     if (list->count > 0)
@@ -187,11 +245,12 @@ void impostor_use(struct workspace *workspace, const struct impostor *impostor, 
 {
     struct gl *gl = workspace->gl;
     const struct atlas *atlas = impostor->atlas;
-    const GLuint buffers[4] = {impostor->instances_buffer, impostor->order_buffer,
-                               atlas->views_buffer, atlas->species_buffer};
+    const GLuint buffers[BUFFERS] = {impostor->instances_buffer, impostor->order_buffer,
+                                     atlas->views_buffer, atlas->species_buffer,
+                                     impostor->sunlights_buffer};
     gl->UseProgram(program);
     gl->BindVertexArray(impostor->vertices);
-    for (GLuint i = 0; i < 4; i++)
+    for (GLuint i = 0; i < BUFFERS; i++)
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
     gl->BindTextureUnit(0, atlas->albedo);
     gl->BindTextureUnit(1, atlas->light);
@@ -242,7 +301,7 @@ enum status impostor_end(struct workspace *workspace, const struct impostor *imp
     gl->UseProgram(0);
     for (GLuint i = 0; i < 3; i++)
         gl->BindTextureUnit(i, 0);
-    for (GLuint i = 0; i < 4; i++)
+    for (GLuint i = 0; i < BUFFERS; i++)
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
     if (impostor->alpha == ATLAS_COVERAGE)
         gl_target_resolve(gl, &impostor->multisampled, target);

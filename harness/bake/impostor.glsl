@@ -5,7 +5,7 @@ uniform vec2 depth_terms;  // ndc z = x + y / distance along the view
 #pragma stage vertex
 struct tree {
     vec4 place;  // position, scale
-    vec4 turn;   // cos, sin of the rotation, species, 0
+    vec4 turn;   // cos, sin of the rotation, species, rotation as a step of sunlights
 };
 
 struct picture {
@@ -21,19 +21,27 @@ struct plant {
     vec4 light[15];
 };
 
+// Light from the sun on a picture of a tree that is turned by a step.
+struct sunlight {
+    vec4 factors;  // of the four channels
+    vec4 rest;     // x: light without channels
+};
+
 layout(std430, binding = 0) readonly buffer trees_buffer { tree trees[]; };
 layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
 layout(std430, binding = 2) readonly buffer pictures_buffer { picture pictures[]; };
 layout(std430, binding = 3) readonly buffer plants_buffer { plant plants[]; };
+layout(std430, binding = 4) readonly buffer sunlights_buffer { sunlight sunlights[]; };
 
 uniform int first_tree;
 uniform vec2 layer_px;    // size of a layer
 uniform float pixel_m;    // metres across a pixel at a distance of 1 m
 uniform int last_level;
 
-out vec4 place[VIEWS];              // texture coordinates, layer, weight
+out vec2 place[VIEWS];              // texture coordinates
+flat out vec2 layer_weight[VIEWS];
 flat out vec4 light_factors[VIEWS]; // of the four channels
-flat out vec3 light_rest;           // light without channels, of each picture
+flat out float light_rest[VIEWS];   // light without channels
 flat out vec4 shared_terms;         // albedo scale, level, radius (m, world), quad's number
 #ifdef FOG
 out float clear_share;              // what the fog leaves
@@ -72,17 +80,11 @@ vec2 corner_of(vec2 low, vec2 high, int corner)
 void set_picture(int k, tree t, plant p, int index, vec2 st, float weight)
 {
     picture pic = pictures[index];
-    vec3 sun = to_tree(sun_direction, t);
-    sun = vec3(dot(sun, pic.right_s.xyz), dot(sun, pic.up_t.xyz), dot(sun, pic.toward_area.xyz));
-    vec4 q0 = vec4(1.0, sun * sun);
-    vec4 q1 = vec4(sun.x * sun.y, sun.x * sun.z, sun.y * sun.z, sun.x);
-    vec4 q2 = vec4(sun.yz, 0.0, 0.0);
-    for (int i = 0; i < 4; i++)
-        light_factors[k][i] = dot(p.light[3 * i + 3], q0) + dot(p.light[3 * i + 4], q1) +
-                              dot(p.light[3 * i + 5], q2);
-    light_rest[k] = dot(p.light[0], q0) + dot(p.light[1], q1) + dot(p.light[2], q2);
-    place[k] = vec4((st - vec2(pic.right_s.w, pic.up_t.w)) / (p.shape.z * layer_px), float(index),
-                    weight);
+    sunlight sun = sunlights[index * SUN_STEPS + int(t.turn.w)];
+    light_factors[k] = sun.factors;
+    light_rest[k] = sun.rest.x;
+    layer_weight[k] = vec2(float(index), weight);
+    place[k] = (st - vec2(pic.right_s.w, pic.up_t.w)) / (p.shape.z * layer_px);
 }
 
 // The quad's corner at `own` (m, plant's axes, from its centre); what is seen there lies depth_m nearer to the eye.
@@ -106,9 +108,10 @@ void set_corner(tree t, plant p, vec3 own, float depth_m, float level, uint numb
 layout(binding = 0) uniform sampler2DArray albedo_map;
 layout(binding = 1) uniform sampler2DArray light_map;
 layout(binding = 2) uniform sampler2DArray depth_map;
-in vec4 place[VIEWS];
+in vec2 place[VIEWS];
+flat in vec2 layer_weight[VIEWS];
 flat in vec4 light_factors[VIEWS];
-flat in vec3 light_rest;
+flat in float light_rest[VIEWS];
 flat in vec4 shared_terms;
 #ifdef FOG
 in float clear_share;
@@ -140,18 +143,19 @@ void main()
     vec3 radiance = vec3(0.0);
     float coverage = 0.0, depth = 0.0;
     for (int k = 0; k < VIEWS; k++) {
-        vec4 texel = textureLod(albedo_map, place[k].xyz, shared_terms.y);
-        vec4 light = textureLod(light_map, place[k].xyz, shared_terms.y);
+        vec3 at = vec3(place[k], layer_weight[k].x);
+        vec4 texel = textureLod(albedo_map, at, shared_terms.y);
+        vec4 light = textureLod(light_map, at, shared_terms.y);
         float diffuse = light_rest[k] + dot(light, light_factors[k]);
         vec3 lit = texel.rgb * max(sun_radiance * diffuse + ambient, 0.0);
 #ifdef STRAIGHT
         lit *= texel.a;
 #endif
-        float weight = VIEWS == 1 ? 1.0 : place[k].w;
+        float weight = VIEWS == 1 ? 1.0 : layer_weight[k].y;
         radiance += weight * lit;
         coverage += weight * texel.a;
 #ifdef DEPTH
-        depth += weight * texel.a * textureLod(depth_map, place[k].xyz, shared_terms.y).r;
+        depth += weight * texel.a * textureLod(depth_map, at, shared_terms.y).r;
 #endif
     }
 #ifdef ALPHA_TEST

@@ -8,6 +8,9 @@
 #include "bake/backdrop.h"
 #include "bake/cull.h"
 
+/* Rotations of a tree that its light is computed for: 1.4 degrees apart. */
+enum { IMPOSTOR_SUN_STEPS = 256 };
+
 struct impostor {
     const struct scene *scene;
     struct atlas *atlas;
@@ -16,6 +19,8 @@ struct impostor {
     enum atlas_alpha alpha;
     GLuint vertices; /* no attributes; the index buffer of fans */
     GLuint instances_buffer, order_buffer;
+    GLuint sunlights_buffer; /* pictures x IMPOSTOR_SUN_STEPS: what the sun makes of the channels */
+    float sun_direction[3];  /* that sunlights_buffer holds; zeros: none yet */
     size_t fans_quad,
         fans_hull; /* how many fans of 4 and of ATLAS_HULL corners the index buffer holds */
     struct target multisampled; /* of ATLAS_COVERAGE; made at the first draw */
