@@ -88,15 +88,17 @@ enum status file_append(const char *path, const void *data, size_t size, struct 
     if (file < 0)
         return error_errno(error, STATUS_IO, "%s: cannot be written", path);
     struct stat info;
-    off_t before = fstat(file, &info) == 0 ? info.st_size : -1;
+    bool regular = fstat(file, &info) == 0 && S_ISREG(info.st_mode);
     bool good = write_all(file, data, size);
     int number = errno;
     /* A half-written record (full disk) is taken back, so that the file stays whole. */
-    if (!good && before >= 0 && ftruncate(file, before) != 0)
-        before = -1; /* a device; the first error is the one to tell */
+    bool torn = !good && regular && ftruncate(file, info.st_size) != 0;
     close(file);
     errno = number;
-    return good ? STATUS_OK : error_errno(error, STATUS_IO, "%s: cannot be written", path);
+    if (good)
+        return STATUS_OK;
+    return error_errno(error, STATUS_IO, "%s: cannot be written%s", path,
+                       torn ? " and may end in half a record" : "");
 }
 
 enum status file_make_folder(const char *path, struct error *error)

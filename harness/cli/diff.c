@@ -54,12 +54,6 @@ struct outcome {
     struct comparison comparison;
 };
 
-static double metric_of(const struct metrics *metrics, const struct metric_info *info)
-{
-    const void *field = (const char *)metrics + info->offset;
-    return *(const double *)field;
-}
-
 static void forget(struct metrics *metrics)
 {
     metrics->coverage = metrics->coverage_bias = NAN;
@@ -177,7 +171,7 @@ int verb_diff(int argc, char **argv)
     argp_parse(&argp, argc, argv, 0, NULL, &request);
     struct arena *arena = arena_create(0);
     struct error error = {0};
-    struct outcome outcome;
+    struct outcome outcome = {0};
     enum status status = diff(arena, &request, &outcome, &error);
     if (status == STATUS_OK && request.json)
         print_json(arena, &request, &outcome);

@@ -19,13 +19,6 @@ static const float magma[17][3] = {
     {0.9928f, 0.8776f, 0.6335f}, {0.9871f, 0.9914f, 0.7495f},
 };
 
-struct image *frame_to_image(struct arena *arena, const struct frame *frame)
-{
-    struct image *image = ARENA_NEW(arena, struct image);
-    *image = (struct image){frame->width_px, frame->height_px, 4, frame->rgba, frame_names};
-    return image;
-}
-
 /* count channels of rgba and variance side by side. */
 static float *interleave(struct arena *arena, const struct frame *frame, size_t channels)
 {
@@ -102,12 +95,12 @@ static enum status image_to_frame(struct arena *arena, const struct image *image
 
 static bool is_frame_file(const char *path)
 {
-    char start[8] = "";
+    char start[sizeof FRAME_FILE_MAGIC - 1];
     FILE *file = fopen(path, "rb");
     if (!file)
         return false;
     bool is = fread(start, 1, sizeof start, file) == sizeof start &&
-              memcmp(start, "TLFRAME1", sizeof start) == 0;
+              memcmp(start, FRAME_FILE_MAGIC, sizeof start) == 0;
     fclose(file);
     return is;
 }

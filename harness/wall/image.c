@@ -121,7 +121,7 @@ enum status image_read(struct arena *arena, const char *path, bool linear, struc
     struct error shim_error;
     const struct oiio_calls *calls = load_shim(&shim_error);
     if (!calls)
-        return error_set(error, shim_error.status, "%s: %s", path, shim_error.text);
+        return error_set(error, STATUS_UNAVAILABLE, "%s: %s", path, shim_error.text);
     char message[512] = "";
     struct oiio_context context = {allocate, arena, message, sizeof message};
     struct oiio_picture picture = {0};
@@ -199,7 +199,7 @@ static enum status encode_image(struct arena *arena, const char *path, const str
     struct error shim_error;
     const struct oiio_calls *calls = load_shim(&shim_error);
     if (!calls)
-        return error_set(error, shim_error.status, "%s: %s", path, shim_error.text);
+        return error_set(error, STATUS_UNAVAILABLE, "%s: %s", path, shim_error.text);
     const char *const *names = image->names ? image->names : default_names(image->channels_count);
     struct oiio_picture picture = {
         image->width_px, image->height_px, image->channels_count, NULL, NULL, -1, encode};
