@@ -40,7 +40,7 @@ endif
 # -ffp-contract=off: the same forest and the same picture from every compiler.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(WARN) $(MODE) -fPIC -fopenmp -ffp-contract=off -fno-math-errno \
     -fvisibility=default -MMD -MP -Iharness -I$(GEN) -DCGLM_ALL_UNALIGNED \
-    -DTREELINE_PREFIX='"$(PREFIX)"' -DTREELINE_FLAGS='"$(MODE)"' -DEMBREE_VERSION=$(EMBREE) \
+    -DTREELINE_FLAGS='"$(MODE)"' -DEMBREE_VERSION=$(EMBREE) \
     $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(PKG_HEADERS) 2>/dev/null)) $(CFLAGS)
 CXXFLAGS_ALL := -std=c++17 $(WARN) $(MODE) -fPIC -Iharness \
     $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenImageIO 2>/dev/null)) $(CXXFLAGS)
@@ -196,7 +196,8 @@ format:
 # A stamp a file: all cores work, and a second lint reads only what changed (the object knows the headers).
 TIDY := $(patsubst %.c,$(BUILD)/%.tidy,$(SOURCES) harness/cli/treeline.c)
 $(BUILD)/%.tidy: %.c $(BUILD)/%.o .clang-tidy
-	clang-tidy --quiet --warnings-as-errors='*' $< -- $(filter-out -MMD -MP,$(CFLAGS_ALL)) 2>$@.log || { cat $@.log; exit 1; }
+	@echo "clang-tidy $<"
+	@clang-tidy --quiet --warnings-as-errors='*' $< -- $(filter-out -MMD -MP,$(CFLAGS_ALL)) 2>$@.log || { cat $@.log; exit 1; }
 	@touch $@
 
 lint:

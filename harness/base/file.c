@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -146,19 +147,18 @@ const char *data_folder(void)
         return given;
     char program[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length > 0) {
-        program[length] = 0;
-        *strrchr(program, '/') = 0;
-        /* Beside the program, above build/CONFIG/, above build/CONFIG/tests/. */
-        static const char *const ups[] = {"", "/../..", "/../../.."};
-        for (size_t i = 0; i < sizeof ups / sizeof ups[0]; i++)
-            if (data_at(program, ups[i], folder)) {
-                char *real = realpath(folder, NULL);
-                if (real)
-                    snprintf(folder, sizeof folder, "%s", real);
-                free(real);
-                return folder;
-            }
-    }
-    return TREELINE_PREFIX "/share/treeline";
+    program[length > 0 ? length : 0] = 0;
+    const char *base = dirname(program);
+    /* Beside the program; installed; above build/CONFIG/, above build/CONFIG/tests/. */
+    static const char *const ups[] = {"", "/../share/treeline", "/../..", "/../../.."};
+    size_t i = 0;
+    while (i < sizeof ups / sizeof ups[0] && !data_at(base, ups[i], folder))
+        i++;
+    if (i == sizeof ups / sizeof ups[0])
+        data_at(base, ups[1], folder); /* for the error that names it */
+    char *real = realpath(folder, NULL);
+    if (real)
+        snprintf(folder, sizeof folder, "%s", real);
+    free(real);
+    return folder;
 }

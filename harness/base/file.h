@@ -32,7 +32,8 @@ void cache_put(const char *kind, uint64_t hash, const void *data, size_t size);
 enum status cache_trim(size_t limit_bytes, size_t *removed_bytes, struct error *error);
 
 /* The folder of scenes/, reports/ and methods' data: $TREELINE_DATA, else beside the executable
- * when it holds scenes/, else the compile-time PREFIX/share/treeline. */
+ * when it holds scenes/, else PREFIX/share/treeline of a program in PREFIX/bin, else the checkout
+ * whose build/ holds the program. An installation may be moved. */
 const char *data_folder(void);
 
 #endif

@@ -22,16 +22,15 @@ static const char *const names_y[] = {"Y"};
 static const char *const names_ya[] = {"Y", "A"};
 static const char *const names_rgba[] = {"R", "G", "B", "A"};
 
-/* The folder of the executable, its parent and parent/lib/treeline, then PREFIX/lib/treeline; tried
- * in this order, so that a build finds its own shim and an installation may be moved. */
+/* From beside the executable (a build), the folder above (its tests), or PREFIX/lib/treeline of a
+ * program in PREFIX/bin. */
 static const struct oiio_calls *load_shim(struct error *error)
 {
     char self[PATH_MAX] = "";
     ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
     self[length > 0 ? length : 0] = 0;
     const char *folder = dirname(self);
-    const char *formats[] = {"%s/" SHIM, "%s/../" SHIM, "%s/../lib/treeline/" SHIM,
-                             TREELINE_PREFIX "/lib/treeline/" SHIM};
+    const char *formats[] = {"%s/" SHIM, "%s/../" SHIM, "%s/../lib/treeline/" SHIM};
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         char path[PATH_MAX + 64];
         snprintf(path, sizeof path, formats[i], folder);
@@ -50,9 +49,9 @@ static const struct oiio_calls *load_shim(struct error *error)
         return NULL;
     }
     error_set(error, STATUS_UNAVAILABLE,
-              "no images can be read or written here: %s is neither beside the executable, nor in "
-              "the folder above, nor in %s/lib/treeline",
-              SHIM, TREELINE_PREFIX);
+              "no images can be read or written here: " SHIM " is neither in %s, nor in the folder "
+              "above it, nor in lib/treeline there",
+              folder);
     return NULL;
 }
 
