@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -127,6 +128,23 @@ enum status file_make_folder(const char *path, struct error *error)
 bool file_exists(const char *path)
 {
     return access(path, F_OK) == 0;
+}
+
+bool path_ends_with(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && path[length - tail - 1] != '/' &&
+           strcasecmp(path + length - tail, ending) == 0;
+}
+
+char *path_stem(struct arena *arena, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *stem = arena_strdup(arena, slash ? slash + 1 : path);
+    char *dot = strrchr(stem, '.');
+    if (dot && dot > stem)
+        *dot = 0;
+    return stem;
 }
 
 /* Fills folder when BASE/UP/scenes exists. */

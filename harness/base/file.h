@@ -20,6 +20,12 @@ enum status file_append(const char *path, const void *data, size_t size, struct 
 enum status file_make_folder(const char *path, struct error *error);
 bool file_exists(const char *path);
 
+/* "trees/Oak.OBJ" ends with ".obj": the case of letters does not count, and a name must stand
+ * before the ending. */
+bool path_ends_with(const char *path, const char *ending);
+/* A file's name without folder and ending: "Oak". */
+char *path_stem(struct arena *arena, const char *path);
+
 /* The cache: $TREELINE_CACHE, else $XDG_CACHE_HOME/treeline, else ~/.cache/treeline. Entries are
  * KIND-HASH; an entry that is torn or of another size does not exist. TREELINE_CACHE=off disables.
  */

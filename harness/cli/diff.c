@@ -1,4 +1,5 @@
 /* treeline diff: two pictures compared by every metric. */
+#include "base/file.h"
 #include "cli/cli.h"
 #include "truth/frame_image.h"
 #include "truth/metrics.h"
@@ -62,8 +63,7 @@ static void forget(struct metrics *metrics)
 static enum status write_map(struct arena *arena, const char *path, float *map, int width_px,
                              int height_px, struct error *error)
 {
-    const char *dot = strrchr(path, '.');
-    if (dot && strcmp(dot, ".exr") == 0) {
+    if (path_ends_with(path, ".exr")) {
         struct image image = {width_px, height_px, 1, map, NULL};
         return image_write(path, &image, 32, false, error);
     }

@@ -1,6 +1,8 @@
 /* Frames to images and back; error maps to colours. */
 #include "truth/frame_image.h"
 
+#include "base/file.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,8 +35,7 @@ static float *interleave(struct arena *arena, const struct frame *frame, size_t 
 
 enum status frame_write_image(const char *path, const struct frame *frame, struct error *error)
 {
-    const char *dot = strrchr(path, '.');
-    bool exr = dot && strcasecmp(dot, ".exr") == 0;
+    bool exr = path_ends_with(path, ".exr");
     struct arena *scratch = arena_create(0);
     size_t channels = !exr ? 3 : frame->variance ? 8 : 4;
     struct image image = {frame->width_px, frame->height_px, (int)channels,

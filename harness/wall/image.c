@@ -11,7 +11,6 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -220,9 +219,8 @@ static enum status encode_image(struct arena *arena, const char *path, const str
 enum status image_write(const char *path, const struct image *image, int bits, bool encode,
                         struct error *error)
 {
-    const char *dot = strrchr(path, '.');
-    bool exr = dot && strcasecmp(dot, ".exr") == 0;
-    if (!exr && !(dot && strcasecmp(dot, ".png") == 0))
+    bool exr = path_ends_with(path, ".exr");
+    if (!exr && !path_ends_with(path, ".png"))
         return error_set(error, STATUS_INVALID, "%s: pictures are written as .exr or .png", path);
     struct arena *scratch = arena_create(0);
     uint8_t *bytes;
