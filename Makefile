@@ -202,7 +202,7 @@ $(BUILD)/%.tidy: %.c $(BUILD)/%.o .clang-tidy
 
 lint:
 	@.ci/install lint
-	clang-format --dry-run -Werror $(FORMAT)
+	@clang-format --dry-run -Werror $(FORMAT)
 	@$(MAKE) --no-print-directory -j$(shell nproc) tidy
 	cppcheck --quiet -j$(shell nproc) --error-exitcode=1 --enable=warning,portability --inline-suppr \
 	    --suppress=missingIncludeSystem -Iharness -I$(GEN) harness methods
