@@ -1,17 +1,20 @@
 // Triangles of plants, instanced. Variants:
 // PRUNED: the elements of a far tree; they grow as they get fewer, and shrink away at the end of the run.
+// SIFTED: triangles of any tree, in the world already.
 // TEXTURED: alpha-tested. LEAF: leaf shading, else bark. LIT_AT_VERTICES: flat triangles, shaded before they are
 // rasterised.
 #pragma stage vertex
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, 0 bark
-layout(location = 2) in vec3 albedo;
+layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, 0 bark; SIFTED: (2 species + leaf) / 32767
+layout(location = 2) in vec4 albedo;  // w: SIFTED, 1 / growth
 #ifdef TEXTURED
 layout(location = 3) in vec2 uv;
 sample out vec2 texture_uv;
 #endif
+#ifndef SIFTED
 layout(location = 5) in vec4 place;  // foot, m; first element of the run
 layout(location = 6) in vec4 turn;   // scale cos, scale sin; elements of the run, their growth (-: without bark)
+#endif
 #ifdef LIT_AT_VERTICES
 centroid out vec3 radiance;
 #else
@@ -23,9 +26,13 @@ centroid out vec3 surface_albedo;
 layout(location = 4) in vec3 center;
 uniform float elements;  // of the plant
 uniform float taper;     // share of the run that is shrinking
-uniform bool level_contrast;
-uniform vec3 mean_bark, mean_leaf;  // lit, over the plant
 #endif
+#ifdef SIFTED
+uniform vec3 mean[2 * SPECIES];  // bark and leaves of each species, lit, over the plant
+#else
+uniform vec3 mean[2];
+#endif
+uniform bool level_contrast;
 
 void main()
 {
@@ -38,28 +45,39 @@ void main()
     float grow = abs(turn.w);
     keep = leaf || turn.w > 0.0 ? keep : 0.0;
     local = center + (position - center) * (grow * keep);
+#elif defined(SIFTED)
+    int owner = int(round(normal.w * 32767.0));
+    bool leaf = (owner & 1) == 1;
 #elif defined(LEAF)
     const bool leaf = true;
 #else
     const bool leaf = false;
 #endif
+#ifdef SIFTED
+    vec3 world = position;
+    vec3 n = normal.xyz;
+#else
     float scale = length(turn.xy);
     vec2 way = turn.xy / scale;
     vec3 world = place.xyz + scale * rotate_y(local, way.x, way.y);
     vec3 n = rotate_y(normal.xyz, way.x, way.y);
+#endif
 #ifdef LIT_AT_VERTICES
     bool facing = dot(n, eye_m - world) >= 0.0;  // the same at every point of a flat triangle
-    vec3 lit = leaf ? shade_leaf(albedo, n, facing) : shade_bark(albedo, n, facing);
-#ifdef PRUNED
+    vec3 lit = leaf ? shade_leaf(albedo.rgb, n, facing) : shade_bark(albedo.rgb, n, facing);
     // One element stands for grow^2: the mean of so many varies grow times less (Cook et al. 2007, 3.3).
+#if defined(PRUNED)
     if (level_contrast)
-        lit = mix(leaf ? mean_leaf : mean_bark, lit, min(1.0, 1.0 / grow));
+        lit = mix(mean[leaf ? 1 : 0], lit, min(1.0, 1.0 / grow));
+#elif defined(SIFTED)
+    if (level_contrast && albedo.w < 1.0)
+        lit = mix(mean[owner], lit, albedo.w);
 #endif
     radiance = shade_fog(lit, world);
 #else
     position_m = world;
     shading_normal = n;
-    surface_albedo = albedo;
+    surface_albedo = albedo.rgb;
 #endif
 #ifdef TEXTURED
     texture_uv = uv;

@@ -25,15 +25,15 @@ static void text_set(struct error *error, const char *format, va_list arguments)
     memcpy(error->text, text, sizeof text);
 }
 
-void error_write(struct error *error, enum status status, const char *format, ...)
+enum status error_set(struct error *error, enum status status, const char *format, ...)
 {
     if (!error)
-        return;
+        return status;
     va_list arguments;
     va_start(arguments, format);
     text_set(error, format, arguments);
     va_end(arguments);
-    error->status = status;
+    return error->status = status;
 }
 
 enum status error_context(struct error *error, const char *format, ...)

@@ -1,0 +1,32 @@
+/* How much of its surroundings a plant covers, and a run of its pruned elements: the union of their
+ * triangles as seen from far away, on a grid of samples from three sides.
+ *
+ * Area alone does not keep a crown's look (Cook et al. 2007, 3.2): leaves hang in clumps and hide
+ * each other, while few and large ones spread, so that the same area covers more. The size at which
+ * a run covers what the plant does is found by trying. */
+#ifndef TREELINE_BAKE_COVER_H
+#define TREELINE_BAKE_COVER_H
+
+#include "bake/detail.h"
+#include "bake/prune.h"
+
+struct cover;
+
+/* The plant itself is looked at once, all triangles of its level 0. */
+struct cover *cover_create(struct arena *arena, const struct mesh *mesh,
+                           const struct detail *detail);
+
+/* Square metres covered, the mean of the three sides. */
+double cover_plant(const struct cover *cover);
+
+/* `kept` elements from `begin` on (around the end) as prune.h and polygons.glsl scale them; bark:
+ * the level of bark drawn instead of the run's own, or -1. */
+struct cover_run {
+    const struct prune *prune;
+    uint32_t begin;
+    float kept, growth, taper;
+    int bark;
+};
+double cover_of_run(struct cover *cover, const struct cover_run *run);
+
+#endif

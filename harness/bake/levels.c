@@ -1,0 +1,185 @@
+/* Which representation of a plant stands at which distance. */
+#include "bake/levels.h"
+#include "bake/cover.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Twigs are thinner than a pixel long before they may be left out: bark moves by this share of a
+ * tolerance. */
+static const float BARK_SHARE = 0.125f, BARK_AREA_KEPT = 0.75f;
+
+/* Elements that are looked at to find a step's cover, and how well it is matched. */
+enum { RUN_ELEMENTS = 8192, MATCH_ROUNDS = 5 };
+static const double MATCH_ERROR = 0.004, SIZE_LEAST = 0.5, SIZE_MOST = 1.5;
+
+/* What keeps the area: the integral of the squared size over a run whose last share, taper, shrinks
+ * linearly to 0, times growth squared, is that of all elements. */
+static float growth_of(const struct levels *levels, float kept, float taper)
+{
+    return sqrtf((float)levels->elements / (kept * (1 - taper * 2 / 3)));
+}
+
+uint32_t levels_begin(const struct levels *levels, uint32_t run)
+{
+    return (uint32_t)((uint64_t)run * levels->elements / LEVELS_RUNS);
+}
+
+static void fill_steps(struct levels *levels, const struct prune *prune)
+{
+    levels->elements = (uint32_t)prune->count;
+    levels->area_m2 = (float)prune->area_m2;
+    double left = (double)prune->count;
+    while (levels->steps_count < LEVELS_STEPS_MAX && left >= 1) {
+        levels->step_size[levels->steps_count] = 1;
+        levels->step_elements[levels->steps_count++] = (uint32_t)ceil(left);
+        if (left <= 2)
+            break;
+        left = fmax(2, left * 0.70710678118654752);
+    }
+}
+
+static size_t bark_triangles(const struct detail *detail, size_t level)
+{
+    size_t indices = 0;
+    for (size_t b = 0; b < detail->batches_count; b++)
+        if (detail->batches[b].kind == MATERIAL_BARK)
+            indices += detail->batches[b].levels[level].indices_count;
+    return indices / 3;
+}
+
+static uint32_t bark_level(const struct levels *levels, float per_m)
+{
+    uint32_t level = 0;
+    while (level + 1 < levels->levels_count && levels->errors_m[level + 1] * per_m <= BARK_SHARE)
+        level++;
+    return level;
+}
+
+/* The bark of each step of pruning: the coarsest level within the error, while it keeps most of its
+ * area. */
+static void choose_bark(struct levels *levels, const struct detail *detail)
+{
+    for (uint32_t step = 0; step < levels->steps_count; step++) {
+        float per_m = sqrtf((float)levels->step_elements[step] / levels->area_m2);
+        uint32_t level = bark_level(levels, per_m);
+        size_t bark = bark_triangles(detail, level);
+        bool whole = detail->bark_area_m2[level] >= BARK_AREA_KEPT * detail->bark_area_m2[0];
+        bool use = bark > 0 && bark <= levels->step_elements[step] && whole;
+        levels->step_bark[step] = use ? (int)level : -1;
+    }
+}
+
+/* Square metres that a step's runs cover at a size, the mean of so many runs that chance averages
+ * out. */
+static double step_cover(struct cover *cover, const struct levels *levels,
+                         const struct prune *prune, uint32_t step, float taper, float size)
+{
+    float kept = (float)levels->step_elements[step];
+    uint32_t wanted = RUN_ELEMENTS / levels->step_elements[step];
+    uint32_t runs = wanted < 1 ? 1 : wanted > LEVELS_RUNS ? LEVELS_RUNS : wanted;
+    double sum = 0;
+    for (uint32_t r = 0; r < runs; r++) {
+        struct cover_run run = {.prune = prune,
+                                .begin = levels_begin(levels, r * LEVELS_RUNS / runs),
+                                .kept = kept,
+                                .growth = size * growth_of(levels, kept, taper),
+                                .taper = taper,
+                                .bark = levels->step_bark[step]};
+        sum += cover_of_run(cover, &run);
+    }
+    return sum / runs;
+}
+
+/* The size of each step's elements at which they cover what the plant covers: secants through the
+ * logarithms of size and cover. */
+static void match_cover(struct levels *levels, const struct mesh *mesh, const struct detail *detail,
+                        const struct prune *prune, float taper)
+{
+    struct arena *passing = arena_create(0);
+    struct cover *cover = cover_create(passing, mesh, detail);
+    double wanted = log(cover_plant(cover)), last_log = 0;
+    for (uint32_t step = 0; step < levels->steps_count && isfinite(wanted); step++) {
+        double at[2] = {last_log, last_log}, off[2] = {0, 0};
+        for (int round = 0; round < MATCH_ROUNDS; round++) {
+            double slope = 1; /* between cover of single leaves, 2, and of a closed crown, 0 */
+            if (round > 1 && fabs(at[1] - at[0]) > 1e-6)
+                slope = fmin(fmax((off[1] - off[0]) / (at[1] - at[0]), 0.3), 2);
+            double next = round ? at[1] - off[1] / slope : last_log;
+            at[0] = at[1];
+            off[0] = off[1];
+            at[1] = fmin(fmax(next, log(SIZE_LEAST)), log(SIZE_MOST));
+            off[1] = log(step_cover(cover, levels, prune, step, taper, (float)exp(at[1]))) - wanted;
+            if (!isfinite(off[1]) || fabs(off[1]) < MATCH_ERROR)
+                break;
+        }
+        if (isfinite(off[1]))
+            last_log = at[1];
+        levels->step_size[step] = (float)exp(last_log);
+    }
+    arena_destroy(passing);
+}
+
+void levels_fill(struct levels *levels, const struct mesh *mesh, const struct detail *detail,
+                 const struct prune *prune, float taper)
+{
+    *levels = (struct levels){.bound = cull_bound_of(mesh),
+                              .low_m = mesh->minimum_m[1],
+                              .high_m = mesh->maximum_m[1],
+                              .radius_m = mesh->radius_m,
+                              .levels_count = detail->levels_count};
+    memcpy(levels->errors_m, detail->errors_m, sizeof levels->errors_m);
+    memcpy(levels->level_triangles, detail->triangles_count, sizeof levels->level_triangles);
+    if (prune && prune->count > 0) {
+        fill_steps(levels, prune);
+        choose_bark(levels, detail);
+        match_cover(levels, mesh, detail, prune, taper);
+    }
+}
+
+float levels_per_m(const struct levels *levels, const struct view *view, float focal_px,
+                   float tolerance_px, const struct instance *instance, float depth_m)
+{
+    float slope = fabsf(view->forward[1]), half_m = 0.5f * (levels->high_m - levels->low_m);
+    float reach_m = half_m * slope + levels->radius_m * sqrtf(fmaxf(0, 1 - slope * slope));
+    float near_m = fmaxf(view->near_m, depth_m - instance->scale * reach_m);
+    return focal_px * instance->scale / (near_m * tolerance_px);
+}
+
+struct levels_choice levels_choose(const struct levels *levels, float per_m)
+{
+    struct levels_choice choice = {bark_level(levels, per_m), -1};
+    double wanted = (double)levels->area_m2 * per_m * per_m;
+    if (!levels->elements || wanted > levels->elements ||
+        wanted >= (double)levels->level_triangles[choice.level])
+        return choice;
+    choice.step = 0;
+    if (wanted > 0)
+        choice.step =
+            (int)fmin(fmax(2 * log2(levels->elements / wanted), 0), levels->steps_count - 1);
+    while (choice.step > 0 && levels->step_elements[choice.step] < wanted)
+        choice.step--;
+    return choice;
+}
+
+/* The size factor at a number of elements, between the steps' by the logarithm. */
+static float size_at(const struct levels *levels, int step, float kept)
+{
+    float most = (float)levels->step_elements[step];
+    if (step + 1 >= (int)levels->steps_count || kept >= most)
+        return levels->step_size[step];
+    float next = (float)levels->step_elements[step + 1];
+    float share = fminf(logf(most / kept) / logf(most / next), 1);
+    return levels->step_size[step] +
+           share * (levels->step_size[step + 1] - levels->step_size[step]);
+}
+
+struct levels_run levels_run_of(const struct levels *levels, int step, float per_m, bool smooth,
+                                float taper)
+{
+    float most = (float)levels->step_elements[step], kept = most;
+    if (smooth)
+        kept = fminf(most, fmaxf(levels->area_m2 * per_m * per_m, fminf(2, most)));
+    float growth = growth_of(levels, kept, taper);
+    return (struct levels_run){kept, growth * size_at(levels, step, kept)};
+}

@@ -1,0 +1,37 @@
+/* A plant's triangles and pruned elements in vertex arrays, for instanced drawing. */
+#ifndef TREELINE_BAKE_PLANT_GL_H
+#define TREELINE_BAKE_PLANT_GL_H
+
+#include "bake/detail.h"
+#include "bake/prune.h"
+#include "method/method.h"
+
+/* The instanced attributes: foot (m) and first element of the run; scale cos, scale sin, elements
+ * of the run, their growth (negative: without bark). */
+struct plant_gl_placed {
+    float place[4], turn[4];
+};
+
+struct plant_gl_batch {
+    enum material_kind kind;
+    GLuint texture; /* 0: none */
+    bool flat, closed;
+    struct detail_range levels[DETAIL_LEVELS_MAX];
+};
+
+/* Attributes 0 position, 1 normal, 2 albedo, 3 texture coordinates, 4 an element's centre, 5 place,
+ * 6 turn. */
+struct plant_gl {
+    GLuint detail, pruned; /* vertex arrays; pruned 0: none */
+    size_t batches_count;
+    struct plant_gl_batch *batches;
+};
+
+/* placed: a buffer of struct plant_gl_placed. */
+void plant_gl_detail(struct workspace *workspace, const struct detail *detail, GLuint placed,
+                     struct plant_gl *plant);
+/* The index list is 0, 1, 2, ... twice: a run that starts late goes on at the beginning. */
+void plant_gl_pruned(struct workspace *workspace, const struct prune *prune, GLuint placed,
+                     struct plant_gl *plant);
+
+#endif

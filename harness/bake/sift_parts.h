@@ -1,0 +1,43 @@
+/* Between sift.c, which shares out the work, and sift_samples.c, which does it. */
+#ifndef TREELINE_BAKE_SIFT_PARTS_H
+#define TREELINE_BAKE_SIFT_PARTS_H
+
+#include "bake/sift.h"
+
+enum { SIFT_BLOCK = 256 };
+
+/* Rows of the matrix from the world to (x w, y w, w): x, y in pixels from the bottom left corner,
+ * w the depth along the view. */
+struct sift_screen {
+    float rows[3][4];
+    int width_px, height_px;
+    float near_m;
+    float focal_px;  /* pixels a metre at a depth of a metre, anywhere in the picture, at most */
+    float *depths_m; /* height x width, from the bottom: of the nearest triangle over each sample */
+};
+
+/* One thread at one tree. */
+struct sift_work {
+    const struct sift_screen *screen;
+    float low_row, high_row;
+    struct sift_vertex *out[SIFT_STREAMS];
+    size_t filled[SIFT_STREAMS]; /* triangles */
+    int stream;                  /* of the run at work */
+    float turn[2], scale, place[3];
+    float rows[3][4]; /* from the plant to the screen */
+};
+
+void sift_screen_set(struct sift_screen *screen, const struct view *view);
+void sift_project(const struct sift_screen *screen, const float world_m[3], float projected[3]);
+
+/* Whether the tree's box meets the band's rows and, where `look` is set, any sample that nothing
+ * nearer covers yet. */
+bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, bool look);
+void sift_tree_set(struct sift_work *work, const struct instance *instance);
+
+/* `count` elements, at most SIFT_BLOCK, of the set from `at` on; rank: the first one's place in the
+ * run. */
+void sift_block(struct sift_work *work, const struct sift_run *run, size_t at, size_t rank,
+                size_t count);
+
+#endif

@@ -1,0 +1,27 @@
+/* A plant's batches and pruned elements as sets for sift.h. */
+#ifndef TREELINE_BAKE_SIFT_PLANT_H
+#define TREELINE_BAKE_SIFT_PLANT_H
+
+#include "bake/detail.h"
+#include "bake/prune.h"
+#include "bake/sift.h"
+
+/* What shades a stream: bark in each pixel, leaves in each pixel, flat triangles at their corners.
+ */
+enum { SIFT_BARK, SIFT_LEAF, SIFT_LIT };
+
+struct sift_plant {
+    size_t batches_count;
+    bool *bark;                                  /* batches_count */
+    struct sift_set *(*sets)[DETAIL_LEVELS_MAX]; /* batches_count; leaves: the first alone */
+    struct sift_set *pruned;                     /* NULL: none */
+};
+
+/* Textures cannot be sifted: false when a batch has one. */
+bool sift_plant_possible(const struct mesh *mesh);
+
+/* prune: NULL for none. species: normal.w is 2 * species, + 1 for leaves; at most 8192. */
+struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *detail,
+                                     const struct prune *prune, uint32_t species);
+
+#endif

@@ -1,0 +1,288 @@
+/* The inner loops of sift.h: spheres against the grid of samples, triangles against samples and
+ * depths. */
+#include "bake/sift_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A rasteriser rounds corners to 1/256 px, and its sums are rounded otherwise than ours. */
+static const float margin_px = 1.0f / 128;
+/* Samples that a triangle may meet and still be looked at one by one. */
+enum { SAMPLES_MAX = 64 };
+
+void sift_screen_set(struct sift_screen *screen, const struct view *view)
+{
+    screen->width_px = view->width_px;
+    screen->height_px = view->height_px;
+    screen->near_m = view->near_m;
+    for (int j = 0; j < 4; j++) {
+        float w = view->view_projection[j][3];
+        screen->rows[0][j] = 0.5f * (float)view->width_px * (view->view_projection[j][0] + w);
+        screen->rows[1][j] = 0.5f * (float)view->height_px * (view->view_projection[j][1] + w);
+        screen->rows[2][j] = w;
+    }
+    /* toward a corner a sphere is stretched by the secant of the angle from the axis */
+    float up = tanf(0.5f * view->fov_y_rad);
+    float right = up * (float)view->width_px / (float)view->height_px;
+    float focal = 0.5f * (float)view->height_px / up;
+    screen->focal_px = 1.02f * focal * sqrtf(1 + up * up + right * right);
+}
+
+void sift_project(const struct sift_screen *screen, const float world_m[3], float projected[3])
+{
+    for (int i = 0; i < 3; i++)
+        projected[i] = screen->rows[i][0] * world_m[0] + screen->rows[i][1] * world_m[1] +
+                       screen->rows[i][2] * world_m[2] + screen->rows[i][3];
+}
+
+/* Of finite numbers; fminf and fmaxf are calls. */
+static inline float least(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float most(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/* The samples (k stands for k + 0.5) that an extent of positive numbers may meet. */
+static inline int first_sample(float low)
+{
+    return (int)(low + (0.5f - margin_px));
+}
+
+static inline int last_sample(float high)
+{
+    return (int)(high + (0.5f + margin_px)) - 1;
+}
+
+struct box {
+    int x0, x1, y0, y1; /* samples, inclusive */
+};
+
+static bool box_is_hidden(const struct sift_screen *screen, const struct box *box, float depth_m)
+{
+    for (int y = box->y0; y <= box->y1; y++) {
+        const float *row = screen->depths_m + (size_t)y * (size_t)screen->width_px;
+        for (int x = box->x0; x <= box->x1; x++)
+            if (row[x] >= depth_m)
+                return false;
+    }
+    return true;
+}
+
+bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, bool look)
+{
+    const struct sift_screen *screen = work->screen;
+    const struct instance *instance = tree->instance;
+    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, near_m = INFINITY;
+    for (int corner = 0; corner < 8; corner++) {
+        float radius = instance->scale * tree->radius_m, p[3], world[3];
+        world[0] = instance->position_m[0] + (corner & 1 ? radius : -radius);
+        world[1] =
+            instance->position_m[1] + instance->scale * (corner & 2 ? tree->high_m : tree->low_m);
+        world[2] = instance->position_m[2] + (corner & 4 ? radius : -radius);
+        sift_project(screen, world, p);
+        if (!(p[2] > screen->near_m))
+            return true;
+        near_m = least(near_m, p[2]);
+        for (int axis = 0; axis < 2; axis++) {
+            low[axis] = least(low[axis], p[axis] / p[2]);
+            high[axis] = most(high[axis], p[axis] / p[2]);
+        }
+    }
+    struct box box = {
+        first_sample(most(low[0], 0)), last_sample(least(high[0], (float)screen->width_px)),
+        first_sample(most(low[1], work->low_row)), last_sample(least(high[1], work->high_row))};
+    box.x0 = box.x0 < 0 ? 0 : box.x0;
+    box.y0 = box.y0 < (int)work->low_row ? (int)work->low_row : box.y0;
+    box.x1 = box.x1 < screen->width_px ? box.x1 : screen->width_px - 1;
+    box.y1 = box.y1 < (int)work->high_row ? box.y1 : (int)work->high_row - 1;
+    if (!(box.x0 <= box.x1 && box.y0 <= box.y1))
+        return false;
+    return !look || !box_is_hidden(screen, &box, near_m);
+}
+
+void sift_tree_set(struct sift_work *work, const struct instance *instance)
+{
+    float c = cosf(instance->rotation_rad), s = sinf(instance->rotation_rad);
+    work->turn[0] = c;
+    work->turn[1] = s;
+    work->scale = instance->scale;
+    memcpy(work->place, instance->position_m, sizeof work->place);
+    for (int i = 0; i < 3; i++) {
+        const float *row = work->screen->rows[i];
+        double foot = row[3];
+        for (int j = 0; j < 3; j++)
+            foot += (double)row[j] * instance->position_m[j];
+        work->rows[i][0] = instance->scale * (row[0] * c - row[2] * s);
+        work->rows[i][1] = instance->scale * row[1];
+        work->rows[i][2] = instance->scale * (row[0] * s + row[2] * c);
+        work->rows[i][3] = (float)foot;
+    }
+}
+
+/* Marks the elements whose spheres may meet a sample of the band; branch-free. */
+static void mark_block(const struct sift_work *work, const struct sift_set *set, size_t at,
+                       size_t count, float growth, uint8_t *restrict marks)
+{
+    const float *restrict x = set->x + at, *restrict y = set->y + at;
+    const float *restrict z = set->z + at, *restrict radius = set->radius_m + at;
+    const float(*m)[4] = work->rows;
+    float near_m = work->screen->near_m, focal = work->screen->focal_px * work->scale * growth;
+    float right = (float)work->screen->width_px, low = work->low_row, high = work->high_row;
+    float scale = work->scale * growth;
+    for (size_t i = 0; i < count; i++) {
+        float w = m[2][0] * x[i] + m[2][1] * y[i] + m[2][2] * z[i] + m[2][3];
+        float inverse = 1 / w, r = radius[i] * focal * inverse + margin_px;
+        float px = (m[0][0] * x[i] + m[0][1] * y[i] + m[0][2] * z[i] + m[0][3]) * inverse;
+        float py = (m[1][0] * x[i] + m[1][1] * y[i] + m[1][2] * z[i] + m[1][3]) * inverse;
+        float x0 = px - r + 0.5f, x1 = px + r + 0.5f, y0 = py - r + 0.5f, y1 = py + r + 0.5f;
+        /* whole numbers in (x0, x1] are samples; the first one stands right of the left border */
+        x0 = x0 > 0.5f ? x0 : 0.5f;
+        y0 = y0 > low + 0.5f ? y0 : low + 0.5f;
+        x1 = x1 < right + 0.5f ? x1 : right + 0.5f;
+        y1 = y1 < high + 0.5f ? y1 : high + 0.5f;
+        x1 = x1 > 0 ? x1 : 0;
+        y1 = y1 > 0 ? y1 : 0;
+        x0 = x0 < right + 1 ? x0 : right + 1;
+        y0 = y0 < high + 1 ? y0 : high + 1;
+        int meets = ((int)x1 > (int)x0) & ((int)y1 > (int)y0);
+        int close = w < near_m + 8 * scale * radius[i];
+        marks[i] = (uint8_t)(meets | close);
+    }
+}
+
+/* A triangle on the screen. */
+struct projected {
+    float x[3], y[3], w[3];
+};
+
+/* The band's samples that the triangle may meet; false: none. */
+static bool box_of(const struct sift_work *work, const struct projected *p, struct box *box)
+{
+    float x0 = least(least(p->x[0], p->x[1]), p->x[2]), x1 = most(most(p->x[0], p->x[1]), p->x[2]);
+    float y0 = least(least(p->y[0], p->y[1]), p->y[2]), y1 = most(most(p->y[0], p->y[1]), p->y[2]);
+    float right = (float)work->screen->width_px;
+    if (!(x1 >= 0 && x0 <= right && y1 >= work->low_row && y0 <= work->high_row))
+        return false;
+    box->x0 = first_sample(most(x0, 0.25f));
+    box->x1 = last_sample(least(x1, right - 0.25f));
+    box->y0 = first_sample(most(y0, work->low_row + 0.25f));
+    box->y1 = last_sample(least(y1, work->high_row - 0.25f));
+    return box->x0 <= box->x1 && box->y0 <= box->y1;
+}
+
+/* Whether the triangle may change a sample; depths are brought up to date with what it surely
+ * covers. */
+static bool triangle_seen(const struct sift_work *work, const struct projected *p,
+                          const struct box *box, bool closed)
+{
+    const struct sift_screen *screen = work->screen;
+    float area =
+        (p->x[1] - p->x[0]) * (p->y[2] - p->y[0]) - (p->x[2] - p->x[0]) * (p->y[1] - p->y[0]);
+    if (closed && area < 0)
+        return false;
+    float sign = area < 0 ? -1.0f : 1.0f, dx[3], dy[3], slack[3];
+    for (int i = 0; i < 3; i++) {
+        int j = i == 2 ? 0 : i + 1;
+        dx[i] = sign * (p->x[j] - p->x[i]);
+        dy[i] = sign * (p->y[j] - p->y[i]);
+        slack[i] = margin_px * (fabsf(dx[i]) + fabsf(dy[i]));
+    }
+    float near_m = least(least(p->w[0], p->w[1]), p->w[2]) * (1 - 2e-5f);
+    float far_m = most(most(p->w[0], p->w[1]), p->w[2]);
+    bool seen = false;
+    for (int y = box->y0; y <= box->y1; y++) {
+        float *row = screen->depths_m + (size_t)y * (size_t)screen->width_px;
+        for (int x = box->x0; x <= box->x1; x++) {
+            bool meets = true, covers = true;
+            for (int i = 0; i < 3; i++) {
+                float edge =
+                    dx[i] * ((float)y + 0.5f - p->y[i]) - dy[i] * ((float)x + 0.5f - p->x[i]);
+                meets &= edge >= -slack[i];
+                covers &= edge > slack[i];
+            }
+            seen |= meets & (near_m <= row[x]);
+            if (covers && far_m < row[x])
+                row[x] = far_m;
+        }
+    }
+    return seen;
+}
+
+static void put_triangle(struct sift_work *work, const struct sift_vertex *corners,
+                         const float center[3], float size, float growth)
+{
+    struct sift_vertex *out = work->out[work->stream] + 3 * work->filled[work->stream]++;
+    float c = work->turn[0], s = work->turn[1], scale = work->scale;
+    for (int i = 0; i < 3; i++) {
+        const float *p = corners[i].position_m;
+        const int16_t *n = corners[i].normal;
+        float x = center[0] + size * (p[0] - center[0]), y = center[1] + size * (p[1] - center[1]);
+        float z = center[2] + size * (p[2] - center[2]);
+        out[i].position_m[0] = work->place[0] + scale * (x * c + z * s);
+        out[i].position_m[1] = work->place[1] + scale * y;
+        out[i].position_m[2] = work->place[2] + scale * (z * c - x * s);
+        float nx = (float)n[0] * c + (float)n[2] * s, nz = (float)n[2] * c - (float)n[0] * s;
+        out[i].normal[0] = (int16_t)lrintf(least(most(nx, -32767), 32767));
+        out[i].normal[1] = n[1];
+        out[i].normal[2] = (int16_t)lrintf(least(most(nz, -32767), 32767));
+        out[i].normal[3] = n[3];
+        memcpy(out[i].albedo, corners[i].albedo, sizeof out[i].albedo);
+        out[i].albedo[3] = (uint16_t)(growth > 1 ? 65535 / growth : 65535);
+    }
+}
+
+static void sift_element(struct sift_work *work, const struct sift_run *run, size_t element,
+                         float rank)
+{
+    const struct sift_set *set = run->set;
+    const float(*m)[4] = (const float(*)[4])work->rows;
+    float size = run->growth;
+    if (run->taper > 0)
+        size *= least(most((run->kept - rank - 0.5f) / (run->taper * run->kept), 0), 1);
+    const float center[3] = {set->x[element], set->y[element], set->z[element]};
+    for (uint32_t t = set->first[element]; t < set->first[element + 1]; t++) {
+        const struct sift_vertex *corners = set->vertices + 3 * (size_t)t;
+        struct projected p;
+        struct box box;
+        bool close = false;
+        if (run->leaves_only && !(corners[0].normal[3] & 1))
+            continue;
+        for (int i = 0; i < 3; i++) {
+            const float *at = corners[i].position_m;
+            float x = center[0] + size * (at[0] - center[0]),
+                  y = center[1] + size * (at[1] - center[1]);
+            float z = center[2] + size * (at[2] - center[2]);
+            p.w[i] = m[2][0] * x + m[2][1] * y + m[2][2] * z + m[2][3];
+            float inverse = 1 / p.w[i];
+            p.x[i] = (m[0][0] * x + m[0][1] * y + m[0][2] * z + m[0][3]) * inverse;
+            p.y[i] = (m[1][0] * x + m[1][1] * y + m[1][2] * z + m[1][3]) * inverse;
+            close |= !(p.w[i] > work->screen->near_m);
+        }
+        if (!close) {
+            if (!box_of(work, &p, &box))
+                continue;
+            size_t samples = (size_t)(box.x1 - box.x0 + 1) * (size_t)(box.y1 - box.y0 + 1);
+            if (samples <= SAMPLES_MAX && !triangle_seen(work, &p, &box, set->closed))
+                continue;
+        }
+        put_triangle(work, corners, center, size, run->growth);
+    }
+}
+
+void sift_block(struct sift_work *work, const struct sift_run *run, size_t at, size_t rank,
+                size_t count)
+{
+    _Alignas(64) uint8_t marks[SIFT_BLOCK] = {0};
+    mark_block(work, run->set, at, count, run->growth, marks);
+    for (size_t eight = 0; eight < count; eight += 8) {
+        uint64_t any;
+        memcpy(&any, marks + eight, sizeof any);
+        for (size_t i = eight; any && i < eight + 8; i++)
+            if (marks[i])
+                sift_element(work, run, at + i, (float)(rank + i));
+    }
+}
