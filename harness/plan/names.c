@@ -3,6 +3,7 @@
 #include "plan/names.h"
 
 #include "base/hash.h"
+#include "truth/frame.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -123,6 +124,11 @@ enum status cell_complete(struct arena *arena, struct cell *cell,
         cell->width_px = summary->width_px;
         cell->height_px = summary->height_px;
     }
+    if (cell->width_px > FRAME_PIXELS_MAX / cell->height_px)
+        return error_set(error, STATUS_INVALID,
+                         "size: '%dx%d' has %lld pixels; at most %d are allowed", cell->width_px,
+                         cell->height_px, (long long)cell->width_px * cell->height_px,
+                         FRAME_PIXELS_MAX);
     cell->name =
         arena_printf(arena, "%s/%s%s%s/trees=%zu/lod=%s/size=%dx%d/target=%s/seed=%llu",
                      cell->scene, cell->method_name, *cell->options ? ":" : "", cell->options,
@@ -153,6 +159,16 @@ static bool part_set(struct cell *cell, const char *part, enum status *status, s
     return true;
 }
 
+/* Which of a name's keys a "key=value" part begins with, as one bit; 0: none. */
+static unsigned part_bit(const char *part)
+{
+    static const char *const keys[] = {"trees=", "lod=", "size=", "target=", "seed="};
+    for (unsigned i = 0; i < sizeof keys / sizeof *keys; i++)
+        if (!strncmp(part, keys[i], strlen(keys[i])))
+            return 1u << i;
+    return 0;
+}
+
 /* Where the scene ends in "SCENE/METHOD": behind ".json", else at the first slash. */
 static char *scene_end(char *text)
 {
@@ -167,10 +183,15 @@ enum status cell_parse(struct arena *arena, const char *name, struct cell *cell,
         .trees = SIZE_MAX, .lod = LOD_AUTO, .format = TARGET_RGBA16F, .seed = CELL_SEED};
     char *text = arena_strdup(arena, name);
     enum status status = STATUS_OK;
+    unsigned seen = 0;
     for (char *slash = strrchr(text, '/'); slash && part_set(cell, slash + 1, &status, error);
          slash = strrchr(text, '/')) {
         if (status)
             return error_context(error, "cell '%s'", name);
+        if (seen & part_bit(slash + 1))
+            return error_set(error, STATUS_INVALID, "cell '%s': '%.*s' stands twice", name,
+                             (int)strcspn(slash + 1, "="), slash + 1);
+        seen |= part_bit(slash + 1);
         *slash = 0;
     }
     char *slash = scene_end(text);
@@ -254,6 +275,12 @@ static enum status sweeps_parse(struct arena *arena, const char *spec, const cha
             return error_set(error, STATUS_INVALID, "%s: '%s' is not option=value", spec, items[i]);
         if (value) {
             *value++ = 0;
+            for (size_t k = 0; k < *count; k++)
+                if (!strcmp((*sweeps)[k].name, items[i]))
+                    return error_set(error, STATUS_INVALID,
+                                     "%s: '%s' stands twice; values of one option are listed as "
+                                     "%s=A,B",
+                                     spec, items[i], items[i]);
             (*sweeps)[*count].name = items[i];
             (*sweeps)[*count].values = ARENA_ARRAY(arena, char *, items_count);
             ++*count;

@@ -31,7 +31,7 @@ enum status method_expand(struct cell_set *set, const char *spec, const struct c
                           const struct scene_summary *summary, struct error *error);
 
 /* Fills what is missing (trees SIZE_MAX, width_px 0) from the scene's summary, makes the options
- * canonical, and gives the cell its name. */
+ * canonical, and gives the cell its name. A picture above FRAME_PIXELS_MAX is refused. */
 enum status cell_complete(struct arena *arena, struct cell *cell,
                           const struct scene_summary *summary, struct error *error);
 
