@@ -6,13 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Keeps the text one line and shows that it was cut. */
+/* Keeps the text one line, free of what a terminal would obey, and shows that it was cut. */
 static void text_finish(char *text, size_t size, size_t needed)
 {
     if (needed >= size)
         memcpy(text + size - 4, "...", 4);
     for (char *c = text; *c; c++)
-        if (*c == '\n' || *c == '\r' || *c == '\t')
+        if ((unsigned char)*c < ' ' || *c == 0x7f)
             *c = ' ';
 }
 

@@ -13,7 +13,7 @@
 enum status file_read(struct arena *arena, const char *path, size_t limit_bytes, char **text,
                       size_t *size, struct error *error)
 {
-    int file = open(path, O_RDONLY | O_CLOEXEC);
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe is refused, not awaited */
     if (file < 0)
         return error_errno(error, errno == ENOENT ? STATUS_NOT_FOUND : STATUS_IO, "%s", path);
     struct stat info;

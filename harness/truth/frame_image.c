@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 static const char *const frame_names[] = {"R",          "G",          "B",          "A",
                                           "variance.R", "variance.G", "variance.B", "variance.A"};
@@ -103,7 +104,8 @@ static enum status image_to_frame(struct arena *arena, const struct image *image
 static bool is_frame_file(const char *path)
 {
     char start[8] = "";
-    FILE *file = fopen(path, "rb");
+    struct stat info;
+    FILE *file = stat(path, &info) == 0 && S_ISREG(info.st_mode) ? fopen(path, "rb") : NULL;
     if (!file)
         return false;
     bool is = fread(start, 1, sizeof start, file) == sizeof start &&

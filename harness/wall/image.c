@@ -72,6 +72,8 @@ static enum status check_readable(const char *path, struct error *error)
     }
     if (S_ISDIR(about.st_mode))
         return error_set(error, STATUS_INVALID, "%s: is a folder, not a picture", path);
+    if (!S_ISREG(about.st_mode))
+        return error_set(error, STATUS_INVALID, "%s: is not a regular file", path);
     if (access(path, R_OK) != 0)
         return error_errno(error, STATUS_IO, "%s", path);
     return STATUS_OK;
@@ -218,17 +220,25 @@ static enum status encode_image(struct arena *arena, const char *path, const str
     return STATUS_OK;
 }
 
+enum status image_path_check(const char *path, struct error *error)
+{
+    const char *dot = strrchr(path, '.');
+    if (dot && (strcasecmp(dot, ".exr") == 0 || strcasecmp(dot, ".png") == 0))
+        return STATUS_OK;
+    return error_set(error, STATUS_INVALID, "%s: pictures are written as .exr or .png", path);
+}
+
 enum status image_write(const char *path, const struct image *image, int bits, bool encode,
                         struct error *error)
 {
-    const char *dot = strrchr(path, '.');
-    bool exr = dot && strcasecmp(dot, ".exr") == 0;
-    if (!exr && !(dot && strcasecmp(dot, ".png") == 0))
-        return error_set(error, STATUS_INVALID, "%s: pictures are written as .exr or .png", path);
+    enum status status = image_path_check(path, error);
+    if (status != STATUS_OK)
+        return status;
+    bool exr = strcasecmp(strrchr(path, '.'), ".exr") == 0;
     struct arena *scratch = arena_create(0);
     uint8_t *bytes;
     size_t size;
-    enum status status =
+    status =
         encode_image(scratch, path, image, exr, bits, exr ? false : encode, &bytes, &size, error);
     if (status == STATUS_OK)
         status = file_write(path, bytes, size, error);

@@ -27,6 +27,8 @@ struct image {
  * IMAGE_VALUES_MAX is STATUS_INVALID, no shim or OpenImageIO STATUS_UNAVAILABLE. */
 enum status image_read(struct arena *arena, const char *path, bool linear, struct image **image,
                        struct error *error);
+/* STATUS_INVALID unless the path ends in .exr or .png: to be asked before hours of work. */
+enum status image_path_check(const char *path, struct error *error);
 /* By the path's ending, whole or not at all (file_write). .exr: half or float by bits (16, 32),
  * linear, zip, no date, so equal images are equal files; half is clamped to +-65504. .png: 8 or 16
  * bits, 1 to 4 channels; encode applies the sRGB curve to the colour channels (not to alpha) and
