@@ -351,6 +351,18 @@ static void test_run__a_folder_with_a_run_is_refused_unless_resumed(void **state
     assert_int_equal(run_open(folder, &provenance, true, &error), STATUS_OK);
     provenance.flags = "-O0";
     assert_int_equal(run_open(folder, &provenance, true, &error), STATUS_INVALID);
+    provenance = somewhere();
+    provenance.cpu = "another";
+    assert_int_equal(run_open(folder, &provenance, true, &error), STATUS_INVALID);
+    assert_non_null(strstr(error.text, "'another'"));
+    provenance = somewhere();
+    provenance.frame_seconds = 0.25;
+    assert_int_equal(run_open(folder, &provenance, true, &error), STATUS_INVALID);
+    assert_non_null(strstr(error.text, "frame_seconds: was measured with 0.5; 0.25"));
+    provenance = somewhere();
+    provenance.reference_error = 0.02;
+    assert_int_equal(run_open(folder, &provenance, true, &error), STATUS_INVALID);
+    assert_non_null(strstr(error.text, "reference_error"));
     folder_remove(arena, folder);
     arena_destroy(arena);
 }

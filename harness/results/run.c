@@ -131,9 +131,14 @@ enum status run_read(struct arena *arena, const char *path, struct run **run, st
 /* Cuts what stands behind the last newline: a line that a kill or a full disk left half written. */
 static enum status torn_line_cut(const char *file, struct error *error)
 {
-    int opened = open(file, O_RDWR | O_CLOEXEC);
+    int opened = open(file, O_RDWR | O_CLOEXEC | O_NONBLOCK);
     if (opened < 0)
         return error_errno(error, STATUS_IO, "%s: cannot be opened for writing", file);
+    struct stat info;
+    if (fstat(opened, &info) || !S_ISREG(info.st_mode)) {
+        close(opened);
+        return error_set(error, STATUS_INVALID, "%s: is not a regular file", file);
+    }
     off_t end = lseek(opened, 0, SEEK_END), keep = end;
     char byte = 0;
     while (keep > 0 && pread(opened, &byte, 1, keep - 1) == 1 && byte != '\n')
@@ -162,6 +167,23 @@ static enum status plan_check(struct arena *arena, const char *folder,
         return error_set(error, STATUS_INVALID,
                          "%s: was measured by a build with '%s'; this one has '%s'", folder,
                          run->provenance.flags, provenance->flags);
+    if (strcmp(run->provenance.cpu, provenance->cpu) != 0)
+        return error_set(error, STATUS_INVALID,
+                         "%s: was measured on '%s'; this machine has '%s', choose another --out",
+                         folder, run->provenance.cpu, provenance->cpu);
+    const struct {
+        const char *name;
+        double before, now;
+    } settings[] = {
+        {"frame_seconds", run->provenance.frame_seconds, provenance->frame_seconds},
+        {"reference_error", run->provenance.reference_error, provenance->reference_error},
+    };
+    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
+        if (settings[i].before != settings[i].now)
+            return error_set(error, STATUS_INVALID,
+                             "%s: %s: was measured with %g; %g cannot be mixed with it, choose "
+                             "another --out",
+                             folder, settings[i].name, settings[i].before, settings[i].now);
     return STATUS_OK;
 }
 
