@@ -34,22 +34,22 @@ static void put_speed(const struct row *row, FILE *out)
             number_plain(row->values[COLUMN_fps], 3).text);
 }
 
-/* The group to speak about: the most cells on the front, then the most cells, then the most trees.
- */
+/* The group to speak about: a front of the three points that are told, then the most trees, then
+ * the most cells. */
 static const struct group *main_group(const struct book *book, size_t *front, size_t *front_count)
 {
     const struct group *chosen = NULL;
     size_t best = 0;
     for (size_t g = 0; g < book->groups_count; g++) {
         const struct group *group = &book->groups[g];
-        size_t count = book_front(book, group, front);
-        bool wins = count > best ||
-                    (count > 0 && count == best &&
-                     (group->rows_count > chosen->rows_count ||
-                      (group->rows_count == chosen->rows_count && group->trees >= chosen->trees)));
+        size_t count = book_front(book, group, front), told = count < 3 ? count : 3;
+        bool wins = told > best ||
+                    (told > 0 && told == best &&
+                     (group->trees > chosen->trees ||
+                      (group->trees == chosen->trees && group->rows_count >= chosen->rows_count)));
         if (wins) {
             chosen = group;
-            best = count;
+            best = told;
         }
     }
     *front_count = chosen ? book_front(book, chosen, front) : 0;
