@@ -89,6 +89,17 @@ refuses 'an eye that is not finite' 64 "--eye: 'nan,0,0'" render --scene tiny --
 refuses 'a time beyond the path' 64 "--time: '2'" render --scene tiny --method null --time 2
 refuses 'a picture of an unknown kind' 65 'gif' render --scene tiny --method null -o "$work/a.gif"
 refuses 'a picture in no folder' 74 'no/a.png' render --scene tiny --method null -o "$work/no/a.png"
+refuses 'a picture above the largest frame' 65 '67108864 pixels; at most 33554432' render --scene tiny --method null --size 8192x8192
+refuses 'an option that stands twice' 65 "'views' stands twice" run --scene tiny --method billboards:views=8,views=16 --dry-run
+refuses 'a folder without a name' 64 "'' is not the name of a folder" run "${good[@]}" --out ''
+# A pipe has no end to wait for.
+mkdir "$work/pipes" && mkfifo "$work/pipes/cells.jsonl" "$work/pipe.json"
+refuses 'a plan that is a pipe' 65 'not a regular file' run "$work/pipe.json"
+refuses 'a scene that is a pipe' 65 'not a regular file' run --scene "$work/pipe.json" --method null
+refuses 'a picture that is a pipe' 65 'not a regular file' diff "$work/pipe.json" "$work/pipe.json"
+refuses 'results that are a pipe' 65 'not a regular file' report "$work/pipes"
+refuses 'a run into a pipe' 65 'not a regular file' run "${good[@]}" --out "$work/pipes" --resume -q
+refuses 'what a terminal would obey is not printed' 66 "no scene ' \[31mx'" run --scene $'\e[31mx' --method null
 refuses 'an unknown effect' 64 "effects: 'rain'" reference --scene tiny --effects rain
 refuses 'an unknown list' 64 "'trees' is not one of" list trees
 refuses 'an unknown topic' 66 "'nothing' is no verb" help nothing
@@ -147,6 +158,7 @@ is 'one line for the run and one for each repetition' "$(lines "$work/run/cells.
 refuses 'a folder with a run is not mixed' 64 '--resume' run "${good[@]}" "${fast[@]}" --out "$work/run" -q
 try run "${good[@]}" "${fast[@]}" --rounds 2 --out "$work/run" --resume -q
 is 'nothing is left to resume' $rc -eq 0 -a "$(lines "$work/run/cells.jsonl")" -eq 3
+refuses 'other measuring is not mixed in' 65 'frame_seconds: was measured with 0.02; 1 ' run "${good[@]}" --reference-error 0.1 --out "$work/run" --resume -q
 try run "${good[@]}" "${fast[@]}" --rounds 3 --out "$work/run/" --resume -q --json
 is 'more rounds are only the new ones' $rc -eq 0 -a "$(lines "$work/run/cells.jsonl")" -eq 4
 is 'quiet is quiet' ! -s "$work/err"

@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 
 #include "plan/names.h"
+#include "wall/image.h"
 
 #include <errno.h>
 #include <math.h>
@@ -148,6 +149,8 @@ enum status cli_shot_cell(struct arena *arena, const struct cli_shot *shot, bool
     const char *name = shot->cell;
     if (!name && with_method && !shot->method)
         return error_set(error, STATUS_USAGE, "which method? give a CELL or --method");
+    if (shot->out && image_path_check(shot->out, error))
+        return error->status;
     if (!name)
         name = arena_printf(arena, "%s/%s", shot->scene, with_method ? shot->method : "null");
     struct cell parsed;

@@ -157,12 +157,12 @@ enum status run_all(struct arena *arena, const struct run_request *request, cons
 {
     /* Held back here, so that they reach whoever waits for a child, and never cut a line of the
      * results. */
-    sigset_t held;
+    sigset_t held, before;
     sigemptyset(&held);
     sigaddset(&held, SIGINT);
     sigaddset(&held, SIGTERM);
     sigaddset(&held, SIGHUP);
-    sigprocmask(SIG_BLOCK, &held, NULL);
+    sigprocmask(SIG_BLOCK, &held, &before);
     int lock = -1;
     struct provenance provenance;
     struct rounds rounds = {.request = request, .plan = plan, .folder = folder};
@@ -176,6 +176,9 @@ enum status run_all(struct arena *arena, const struct run_request *request, cons
     if (!status)
         status = rounds_do(arena, &rounds, error);
     run_unlock(lock);
+    if (status !=
+        STATUS_INTERRUPTED) /* a second Ctrl-C must not cut what is said about the first */
+        sigprocmask(SIG_SETMASK, &before, NULL);
     if (!status && rounds.failed)
         return error_set(error, STATUS_CELLS_FAILED, "%zu of %zu repetitions failed", rounds.failed,
                          rounds.count);

@@ -188,6 +188,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
         request->json = true;
         return 0;
     case 'o':
+        if (!*text)
+            argp_failure(state, STATUS_USAGE, 0, "--out: '' is not the name of a folder");
         request->out = text;
         return 0;
     case 'q':
