@@ -21,6 +21,7 @@ struct backdrop {
     const struct scene *scene;
     GLuint sky_program, sky_vertices; /* an empty vertex array */
     GLuint terrain_program, terrain_vertices;
+    GLuint smooth_program; /* for an eye above a terrain that is bent little; else 0 */
     size_t chunks_count;
     struct chunk *chunks;
 };
@@ -75,6 +76,48 @@ static size_t fill_chunks(struct arena *arena, const struct mesh *mesh,
     return filled;
 }
 
+/* The largest angle between the normals of two neighbouring samples, as a cosine. */
+static float sharpest_bend_cosine(const struct terrain *terrain)
+{
+    float sharpest = 1;
+    for (uint32_t z = 0; z < terrain->samples_z; z++)
+        for (uint32_t x = 0; x < terrain->samples_x; x++) {
+            const float *here = terrain->normals[(size_t)z * terrain->samples_x + x];
+            const uint32_t right = x + 1 < terrain->samples_x, down = z + 1 < terrain->samples_z;
+            const uint32_t steps[3][2] = {{right, 0}, {0, down}, {right, down}};
+            for (int i = 0; i < 3; i++) {
+                const float *there =
+                    terrain
+                        ->normals[(size_t)(z + steps[i][1]) * terrain->samples_x + x + steps[i][0]];
+                float cosine = here[0] * there[0] + here[1] * there[1] + here[2] * there[2];
+                sharpest = fminf(sharpest, cosine);
+            }
+        }
+    return sharpest;
+}
+
+/* True when interpolating N.L between the samples errs by less than half a step of a 10-bit float:
+ * the mean of unit normals within a cone of half angle h is at least cos(h) long, so N.L errs by at
+ * most 1 - cos(h); a triangle whose sides are at most g lies within a cone of g / sqrt(3). */
+static bool is_smooth(const struct terrain *terrain)
+{
+    float half_angle = acosf(fminf(1, sharpest_bend_cosine(terrain))) / sqrtf(3);
+    return 1 - cosf(half_angle) < 1.0f / 2048;
+}
+
+static enum status prepare_programs(struct workspace *workspace, const struct scene *scene,
+                                    struct backdrop *backdrop)
+{
+    bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
+    enum status status = gl_program(workspace->gl, "terrain", backdrop_glsl, fog ? "FOG 1" : NULL,
+                                    &backdrop->terrain_program, workspace->error);
+    if (status == STATUS_OK && is_smooth(&scene->terrain))
+        status = gl_program(workspace->gl, "smooth terrain", backdrop_glsl,
+                            fog ? "FOG 1\nSMOOTH 1" : "SMOOTH 1", &backdrop->smooth_program,
+                            workspace->error);
+    return status;
+}
+
 static enum status prepare_terrain(struct workspace *workspace, const struct scene *scene,
                                    struct backdrop *backdrop)
 {
@@ -101,8 +144,7 @@ static enum status prepare_terrain(struct workspace *workspace, const struct sce
         gl->EnableVertexArrayAttrib(array, i);
     }
     gl->VertexArrayElementBuffer(array, elements);
-    return gl_program(gl, "terrain", backdrop_glsl, NULL, &backdrop->terrain_program,
-                      workspace->error);
+    return prepare_programs(workspace, scene, backdrop);
 }
 
 enum status backdrop_prepare(struct workspace *workspace, const struct scene *scene,
@@ -127,19 +169,37 @@ static bool eye_is_above(const struct terrain *terrain, const float eye_m[3])
            eye_m[1] > terrain_height(terrain, eye_m[0], eye_m[2]);
 }
 
+static void smooth_uniforms(struct workspace *workspace, GLuint program, const struct scene *scene)
+{
+    struct gl *gl = workspace->gl;
+    bool ambient = workspace->effects & EFFECT_AMBIENT;
+    float in_sun[3], in_shade[3];
+    for (int i = 0; i < 3; i++) {
+        in_sun[i] = scene->terrain.albedo[i] * scene->sun.radiance[i];
+        in_shade[i] = ambient ? scene->terrain.albedo[i] * scene->ambient[i] : 0;
+    }
+    gl->Uniform3fv(gl_uniform(gl, program, "in_sun"), 1, in_sun);
+    gl->Uniform3fv(gl_uniform(gl, program, "in_shade"), 1, in_shade);
+}
+
 static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
                          const struct view *view)
 {
     struct gl *gl = workspace->gl;
     const struct scene *scene = backdrop->scene;
-    GLuint program = backdrop->terrain_program;
     if (backdrop->chunks_count == 0)
         return;
+    bool above = eye_is_above(&scene->terrain, view->eye_m);
+    bool smooth = above && backdrop->smooth_program;
+    GLuint program = smooth ? backdrop->smooth_program : backdrop->terrain_program;
     gl->UseProgram(program);
     gl->BindVertexArray(backdrop->terrain_vertices);
     shade_uniforms(workspace, program, scene, view);
-    gl->Uniform3fv(gl_uniform(gl, program, "albedo"), 1, scene->terrain.albedo);
-    if (eye_is_above(&scene->terrain, view->eye_m))
+    if (smooth)
+        smooth_uniforms(workspace, program, scene);
+    else
+        gl->Uniform3fv(gl_uniform(gl, program, "albedo"), 1, scene->terrain.albedo);
+    if (above)
         gl->Enable(GL_CULL_FACE);
     /* Neighbouring chunks that are seen go in one call. */
     size_t first = 0, count = 0;

@@ -1,4 +1,5 @@
-// Sky and terrain. SKY: one triangle over the picture; else the terrain's mesh.
+// Sky and terrain. SKY: one triangle over the picture; else the terrain's mesh. SMOOTH: seen from above, and bent so
+// little that N.L may be interpolated instead of N. FOG: with fog.
 #pragma stage vertex
 #ifdef SKY
 uniform vec3 corner_rays[3];  // directions through (-1,-1), (3,-1), (-1,3) in clip space, not unit
@@ -13,13 +14,25 @@ void main()
 #else
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+#ifdef FOG
 out vec3 position_m;
+#endif
+#ifdef SMOOTH
+out float cosine;
+#else
 out vec3 shading_normal;
+#endif
 
 void main()
 {
+#ifdef FOG
     position_m = position;
+#endif
+#ifdef SMOOTH
+    cosine = dot(normal, sun_direction);
+#else
     shading_normal = normal;
+#endif
     gl_Position = view_projection * vec4(position, 1.0);
 }
 #endif
@@ -39,12 +52,26 @@ void main()
 }
 #else
 uniform vec3 albedo;
+#ifdef FOG
 in vec3 position_m;
+#endif
+#ifdef SMOOTH
+uniform vec3 in_sun, in_shade;  // albedo times the sun's and the sky's light
+in float cosine;
+#else
 in vec3 shading_normal;
+#endif
 
 void main()
 {
+#ifdef SMOOTH
+    vec3 radiance = in_shade + in_sun * max(0.0, cosine);
+#else
     vec3 radiance = shade_bark(albedo, shading_normal, gl_FrontFacing);
-    color = vec4(shade_fog(radiance, position_m), 0.0);
+#endif
+#ifdef FOG
+    radiance = shade_fog(radiance, position_m);
+#endif
+    color = vec4(radiance, 0.0);
 }
 #endif
