@@ -4,6 +4,8 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 passed=0 failed=0
+words=$(mktemp)
+trap 'rm -f "$words"' EXIT
 check() { # check NAME OFFENDERS
   if [ -z "$2" ]; then
     passed=$((passed + 1))
@@ -78,6 +80,20 @@ done)"
 check 'test names are sentences' "$(grep -nE '^static void test_' tests/test_*.c | grep -vE 'test_[a-z0-9_]+__[a-z0-9_]+\(')"
 check 'no file is too long to read' "$(wc -l $sources tests/*.c | awk '$2 != "total" && $1 > 700 {print $2 ": " $1 " lines"}')"
 check 'no line is longer than 100 columns in C' "$(grep -nE '^.{121,}' $sources)"
+check 'every function fits a screen (60 lines)' "$(for f in $sources; do
+  awk -v f="$f" '$0 == "{" {start = FNR} $0 == "}" && start {if (FNR - start > 60) print f ":" start ": " FNR - start " lines"; start = 0}' "$f"
+done)"
+check 'every function of a header is used by another file' "$(
+  # A name needs three files: its header, its own file, its user. error_write is used through its header's macro.
+  awk '{gsub(/"[^"]*"/, ""); n = split($0, w, /[^A-Za-z0-9_]+/); for (i = 1; i <= n; i++) if (!((w[i], FILENAME) in seen)) {seen[w[i], FILENAME]; files[w[i]]++}}
+    END {for (word in files) print word, files[word]}' $sources tests/*.c tests/*.h tests/data/plugins/*.c harness/wall/*.cpp >"$words"
+  for h in $headers; do
+    grep -ohE '^[a-z][A-Za-z0-9_ ]* \**[a-z][a-z0-9_]+\(' "$h" | grep -vE '^(typedef|return|static|extern "C")' |
+      sed -E 's/.*[ *]([a-z0-9_]+)\($/\1/' | sed "s|\$| $h|"
+  done | grep -v '^error_write ' | awk 'NR == FNR {files[$1] = $2; next} files[$1] < 3 {print $2 ": " $1}' "$words" - | sort -u)"
+check 'no header is included twice' "$(for f in $sources; do
+  grep -oE '^#include [<"][^>"]+[>"]' "$f" | sort | uniq -d | sed "s|^|$f: |"
+done)"
 check 'no unfinished work is marked' "$(grep -nwE 'TODO|FIXME|XXX|HACK' $sources tests/*.c tests/*.sh scenes/*.json Makefile | grep -v '^tests/architecture.sh')"
 
 echo "$passed passed, $failed failed, 0 skipped"

@@ -26,6 +26,13 @@ check 'resume adds no line' test "$(wc -l <"$run/cells.jsonl")" -eq "$lines"
 check 'the report is written' ./treeline report "$run" --out "$page"
 check 'the page is there' test -s "$page/index.html"
 check 'the page asks nothing of the network' bash -c "! grep -E '(src|href)=\"(https?:)?//' '$page/index.html'"
+check 'an installation is made' make -s install PREFIX="$folder/prefix"
+# There, no checkout is in reach: scenes, page templates, image shim and manual come from the installation.
+away() { (cd / && env -u TREELINE_DATA "$folder/prefix/bin/treeline" "$@"); }
+check 'an installation finds its scenes' away list scenes
+check 'an installation writes a picture' away render --scene tiny --method null --output "$folder/away.png"
+check 'an installation writes a page' away report "$run" --out "$folder/away"
+check 'an installation has its manual' grep -q '^.SH VERBS' "$folder/prefix/share/man/man1/treeline.1"
 check 'methods/README.md says what the program says (make docs)' bash -c './treeline help methods | diff - methods/README.md'
 check 'no NaN is shown' bash -c "! grep -wE 'nan|-nan|NaN' '$page'/tables/*"
 check 'the results make sense' python3 - "$run/cells.jsonl" <<'PY'

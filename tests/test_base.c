@@ -301,6 +301,22 @@ static void test_file__what_is_written_is_read_and_appended(void **unused)
     arena_destroy(arena);
 }
 
+static void test_path__an_ending_needs_a_name_before_it_and_the_stem_is_between(void **unused)
+{
+    (void)unused;
+    assert_true(path_ends_with("trees/Oak.OBJ", ".obj"));
+    assert_false(path_ends_with("oak.objx", ".obj"));
+    assert_false(path_ends_with("oakobj", ".obj"));
+    assert_false(path_ends_with(".obj", ".obj"));
+    assert_false(path_ends_with("trees/.obj", ".obj"));
+    assert_false(path_ends_with("", ".obj"));
+    struct arena *arena = arena_create(0);
+    assert_string_equal(path_stem(arena, "a.b/Oak.old.obj"), "Oak.old");
+    assert_string_equal(path_stem(arena, "a.b/oak"), "oak");
+    assert_string_equal(path_stem(arena, ".hidden"), ".hidden");
+    arena_destroy(arena);
+}
+
 static void test_file__folders_missing_files_and_full_disks_are_told(void **unused)
 {
     (void)unused;
@@ -413,6 +429,7 @@ int main(void)
         cmocka_unit_test(test_random__below_stays_below_and_zero_is_allowed),
         cmocka_unit_test(test_hash__order_length_and_seed_matter_and_zero_has_one_sign),
         cmocka_unit_test(test_file__what_is_written_is_read_and_appended),
+        cmocka_unit_test(test_path__an_ending_needs_a_name_before_it_and_the_stem_is_between),
         cmocka_unit_test(test_file__folders_missing_files_and_full_disks_are_told),
         cmocka_unit_test(test_cache__gives_back_what_was_put_and_nothing_torn),
         cmocka_unit_test(test_cache__the_oldest_go_first),

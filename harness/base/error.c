@@ -25,15 +25,15 @@ static void text_set(struct error *error, const char *format, va_list arguments)
     memcpy(error->text, text, sizeof text);
 }
 
-enum status error_set(struct error *error, enum status status, const char *format, ...)
+void error_write(struct error *error, enum status status, const char *format, ...)
 {
     if (!error)
-        return status;
+        return;
     va_list arguments;
     va_start(arguments, format);
     text_set(error, format, arguments);
     va_end(arguments);
-    return error->status = status;
+    error->status = status;
 }
 
 enum status error_context(struct error *error, const char *format, ...)

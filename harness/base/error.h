@@ -10,10 +10,18 @@ struct error {
     char text[1024]; /* one line, no newline; over-long text ends in "..." */
 };
 
-/* Sets status and text; returns status, so that `return error_set(...)` reads well.
- * error may be NULL: then only the status is returned. Newlines in the text become spaces. */
-enum status error_set(struct error *error, enum status status, const char *format, ...)
+/* Sets status and text, printf's way; error may be NULL. Newlines in the text become spaces. */
+void error_write(struct error *error, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* error_write that returns its status, so that `return error_set(...)` reads well. A macro, so that
+ * compilers and analysers see which status comes back; status is evaluated twice. */
+#define error_set(error, status, ...)                                                              \
+    error_returns((error_write((error), (status), __VA_ARGS__), (status)))
+static inline enum status error_returns(enum status status)
+{
+    return status;
+}
 
 /* Puts "CONTEXT: " before the text already there; returns the status already there. */
 enum status error_context(struct error *error, const char *format, ...)

@@ -3,10 +3,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -88,15 +90,17 @@ enum status file_append(const char *path, const void *data, size_t size, struct 
     if (file < 0)
         return error_errno(error, STATUS_IO, "%s: cannot be written", path);
     struct stat info;
-    off_t before = fstat(file, &info) == 0 ? info.st_size : -1;
+    bool regular = fstat(file, &info) == 0 && S_ISREG(info.st_mode);
     bool good = write_all(file, data, size);
     int number = errno;
     /* A half-written record (full disk) is taken back, so that the file stays whole. */
-    if (!good && before >= 0 && ftruncate(file, before) != 0)
-        before = -1; /* a device; the first error is the one to tell */
+    bool torn = !good && regular && ftruncate(file, info.st_size) != 0;
     close(file);
     errno = number;
-    return good ? STATUS_OK : error_errno(error, STATUS_IO, "%s: cannot be written", path);
+    if (good)
+        return STATUS_OK;
+    return error_errno(error, STATUS_IO, "%s: cannot be written%s", path,
+                       torn ? " and may end in half a record" : "");
 }
 
 enum status file_make_folder(const char *path, struct error *error)
@@ -126,6 +130,23 @@ bool file_exists(const char *path)
     return access(path, F_OK) == 0;
 }
 
+bool path_ends_with(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && path[length - tail - 1] != '/' &&
+           strcasecmp(path + length - tail, ending) == 0;
+}
+
+char *path_stem(struct arena *arena, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *stem = arena_strdup(arena, slash ? slash + 1 : path);
+    char *dot = strrchr(stem, '.');
+    if (dot && dot > stem)
+        *dot = 0;
+    return stem;
+}
+
 /* Fills folder when BASE/UP/scenes exists. */
 static bool data_at(const char *base, const char *up, char *folder)
 {
@@ -144,19 +165,18 @@ const char *data_folder(void)
         return given;
     char program[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length > 0) {
-        program[length] = 0;
-        *strrchr(program, '/') = 0;
-        /* Beside the program, above build/CONFIG/, above build/CONFIG/tests/. */
-        static const char *const ups[] = {"", "/../..", "/../../.."};
-        for (size_t i = 0; i < sizeof ups / sizeof ups[0]; i++)
-            if (data_at(program, ups[i], folder)) {
-                char *real = realpath(folder, NULL);
-                if (real)
-                    snprintf(folder, sizeof folder, "%s", real);
-                free(real);
-                return folder;
-            }
-    }
-    return TREELINE_PREFIX "/share/treeline";
+    program[length > 0 ? length : 0] = 0;
+    const char *base = dirname(program);
+    /* Beside the program; installed; above build/CONFIG/, above build/CONFIG/tests/. */
+    static const char *const ups[] = {"", "/../share/treeline", "/../..", "/../../.."};
+    size_t i = 0;
+    while (i < sizeof ups / sizeof ups[0] && !data_at(base, ups[i], folder))
+        i++;
+    if (i == sizeof ups / sizeof ups[0])
+        data_at(base, ups[1], folder); /* for the error that names it */
+    char *real = realpath(folder, NULL);
+    if (real)
+        snprintf(folder, sizeof folder, "%s", real);
+    free(real);
+    return folder;
 }

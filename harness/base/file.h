@@ -20,6 +20,12 @@ enum status file_append(const char *path, const void *data, size_t size, struct 
 enum status file_make_folder(const char *path, struct error *error);
 bool file_exists(const char *path);
 
+/* "trees/Oak.OBJ" ends with ".obj": the case of letters does not count, and a name must stand
+ * before the ending. */
+bool path_ends_with(const char *path, const char *ending);
+/* A file's name without folder and ending: "Oak". */
+char *path_stem(struct arena *arena, const char *path);
+
 /* The cache: $TREELINE_CACHE, else $XDG_CACHE_HOME/treeline, else ~/.cache/treeline. Entries are
  * KIND-HASH; an entry that is torn or of another size does not exist. TREELINE_CACHE=off disables.
  */
@@ -32,7 +38,8 @@ void cache_put(const char *kind, uint64_t hash, const void *data, size_t size);
 enum status cache_trim(size_t limit_bytes, size_t *removed_bytes, struct error *error);
 
 /* The folder of scenes/, reports/ and methods' data: $TREELINE_DATA, else beside the executable
- * when it holds scenes/, else the compile-time PREFIX/share/treeline. */
+ * when it holds scenes/, else PREFIX/share/treeline of a program in PREFIX/bin, else the checkout
+ * whose build/ holds the program. An installation may be moved. */
 const char *data_folder(void);
 
 #endif

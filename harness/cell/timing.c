@@ -31,8 +31,9 @@ static enum status warm_up(struct stage *stage, double *frame_seconds)
     if (status || *frame_seconds >= 4 * limit)
         return status;
     stage_announce(stage, "warm-up");
-    while (!status && !warmup_done(seconds, count, limit))
+    do {
         status = stage_draw(stage, &view, &seconds[count++]);
+    } while (!status && !warmup_done(seconds, count, limit));
     result->warmup_frames = 1 + (double)count;
     *frame_seconds = seconds[count - 1];
     if (status || stage_path_frames(stage->scene) == 1 || *frame_seconds > limit)

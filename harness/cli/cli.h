@@ -37,8 +37,6 @@ double cli_number(const struct argp_state *state, const char *option, const char
                   double minimum, double maximum);
 size_t cli_bytes(const struct argp_state *state, const char *option, const char *text);
 uint64_t cli_seed(const struct argp_state *state, const char *option, const char *text);
-void cli_vector(const struct argp_state *state, const char *option, const char *text,
-                float vector[3]);
 
 /* One cell and one camera, as `render` and `reference` take them. */
 struct cli_shot {
@@ -59,7 +57,5 @@ void cli_shot_view(const struct cli_shot *shot, const struct scene *scene, struc
 int man_page(void);
 /* methods/README.md to stdout: from the methods' own structs and option tables. */
 int methods_page(void);
-/* The exit codes as a table on stdout. */
-void exit_codes_print(void);
 
 #endif

@@ -64,8 +64,8 @@ uint64_t cli_seed(const struct argp_state *state, const char *option, const char
     return seed;
 }
 
-void cli_vector(const struct argp_state *state, const char *option, const char *text,
-                float vector[3])
+static void parse_vector(const struct argp_state *state, const char *option, const char *text,
+                         float vector[3])
 {
     char rest;
     bool good = sscanf(text, "%f,%f,%f%c", &vector[0], &vector[1], &vector[2], &rest) == 3;
@@ -105,11 +105,11 @@ static error_t shot_option(int key, char *text, struct argp_state *state)
         shot->time = cli_number(state, "time", text, 0, 1);
         return 0;
     case KEY_EYE:
-        cli_vector(state, "eye", text, shot->eye_m);
+        parse_vector(state, "eye", text, shot->eye_m);
         shot->has_eye = true;
         return 0;
     case KEY_TARGET:
-        cli_vector(state, "target", text, shot->target_m);
+        parse_vector(state, "target", text, shot->target_m);
         shot->has_target = true;
         return 0;
     case ARGP_KEY_ARG:

@@ -1,4 +1,5 @@
 /* treeline diff: two pictures compared by every metric. */
+#include "base/file.h"
 #include "cli/cli.h"
 #include "truth/frame_image.h"
 #include "truth/metrics.h"
@@ -54,12 +55,6 @@ struct outcome {
     struct comparison comparison;
 };
 
-static double metric_of(const struct metrics *metrics, const struct metric_info *info)
-{
-    const void *field = (const char *)metrics + info->offset;
-    return *(const double *)field;
-}
-
 static void forget(struct metrics *metrics)
 {
     metrics->coverage = metrics->coverage_bias = NAN;
@@ -68,8 +63,7 @@ static void forget(struct metrics *metrics)
 static enum status write_map(struct arena *arena, const char *path, float *map, int width_px,
                              int height_px, struct error *error)
 {
-    const char *dot = strrchr(path, '.');
-    if (dot && strcmp(dot, ".exr") == 0) {
+    if (path_ends_with(path, ".exr")) {
         struct image image = {width_px, height_px, 1, map, NULL};
         return image_write(path, &image, 32, false, error);
     }
@@ -177,7 +171,7 @@ int verb_diff(int argc, char **argv)
     argp_parse(&argp, argc, argv, 0, NULL, &request);
     struct arena *arena = arena_create(0);
     struct error error = {0};
-    struct outcome outcome;
+    struct outcome outcome = {0};
     enum status status = diff(arena, &request, &outcome, &error);
     if (status == STATUS_OK && request.json)
         print_json(arena, &request, &outcome);

@@ -53,7 +53,7 @@ static void method_explain(const struct method *method)
     options_explain(method->options, "no options");
 }
 
-void exit_codes_print(void)
+static void exit_codes_print(void)
 {
     printf("%4s  %-13s %s\n", "code", "word", "meaning");
 #define STATUS_PRINT(name, code, word, meaning) printf("%4d  %-13s %s\n", code, word, meaning);

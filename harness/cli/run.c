@@ -152,8 +152,11 @@ static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct 
     return status;
 }
 
-enum status run_all(struct arena *arena, const struct run_request *request, const struct plan *plan,
-                    const char *folder, const char *command, struct error *error)
+/* All that runs: lock, provenance, references, rounds. folder must hold the run's path.
+ * STATUS_CELLS_FAILED when a cell failed, STATUS_INTERRUPTED after a signal. */
+static enum status run_all(struct arena *arena, const struct run_request *request,
+                           const struct plan *plan, const char *folder, const char *command,
+                           struct error *error)
 {
     /* Held back here, so that they reach whoever waits for a child, and never cut a line of the
      * results. */

@@ -14,11 +14,6 @@ struct run_request {
 /* The command line; ends the process on a wrong one. Lists are allocated in the arena. */
 void run_request_parse(struct arena *arena, int argc, char **argv, struct run_request *request);
 
-/* All that runs: lock, provenance, references, rounds. folder must hold the run's path.
- * STATUS_CELLS_FAILED when a cell failed, STATUS_INTERRUPTED after a signal. */
-enum status run_all(struct arena *arena, const struct run_request *request, const struct plan *plan,
-                    const char *folder, const char *command, struct error *error);
-
 /* Per cell: median frame time with its interval, error, status; on stdout. */
 enum status run_table(struct arena *arena, const char *folder, bool json, struct error *error);
 

@@ -114,6 +114,38 @@ static error_t parse_measuring(int key, const char *text, const struct argp_stat
     }
 }
 
+static error_t parse_run(int key, char *text, const struct argp_state *state,
+                         struct run_request *request)
+{
+    switch (key) {
+    case KEY_RESUME:
+        request->resume = true;
+        return 0;
+    case KEY_RETRY:
+        request->retry = true;
+        return 0;
+    case KEY_DRY_RUN:
+        request->dry_run = true;
+        return 0;
+    case KEY_REPORT:
+        request->report = true;
+        return 0;
+    case KEY_JSON:
+        request->json = true;
+        return 0;
+    case 'o':
+        if (!*text)
+            argp_failure(state, STATUS_USAGE, 0, "--out: '' is not the name of a folder");
+        request->out = text;
+        return 0;
+    case 'q':
+        request->quiet = true;
+        return 0;
+    default:
+        return parse_measuring(key, text, state, &request->plan);
+    }
+}
+
 /* Names alone may stand in one list; behind a colon a comma belongs to the options. */
 static void methods_add(struct parsing *parsing, char *text)
 {
@@ -172,29 +204,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
         plan->seed = cli_seed(state, "seed", text);
         plan->seed_given = true;
         return 0;
-    case KEY_RESUME:
-        request->resume = true;
-        return 0;
-    case KEY_RETRY:
-        request->retry = true;
-        return 0;
-    case KEY_DRY_RUN:
-        request->dry_run = true;
-        return 0;
-    case KEY_REPORT:
-        request->report = true;
-        return 0;
-    case KEY_JSON:
-        request->json = true;
-        return 0;
-    case 'o':
-        if (!*text)
-            argp_failure(state, STATUS_USAGE, 0, "--out: '' is not the name of a folder");
-        request->out = text;
-        return 0;
-    case 'q':
-        request->quiet = true;
-        return 0;
     case ARGP_KEY_ARG:
         return parse_argument(text, state, parsing);
     case ARGP_KEY_END:
@@ -204,7 +213,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
             argp_failure(state, STATUS_USAGE, 0, "--retry goes with --resume");
         return 0;
     default:
-        return parse_measuring(key, text, state, plan);
+        return parse_run(key, text, state, request);
     }
 }
 

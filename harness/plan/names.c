@@ -112,8 +112,10 @@ static enum status options_canonical(struct arena *arena, struct cell *cell, str
     return STATUS_OK;
 }
 
-enum status cell_complete(struct arena *arena, struct cell *cell,
-                          const struct scene_summary *summary, struct error *error)
+/* Fills what is missing (trees SIZE_MAX, width_px 0) from the scene's summary, makes the options
+ * canonical, and gives the cell its name. A picture above FRAME_PIXELS_MAX is refused. */
+static enum status cell_complete(struct arena *arena, struct cell *cell,
+                                 const struct scene_summary *summary, struct error *error)
 {
     enum status status = options_canonical(arena, cell, error);
     if (status)

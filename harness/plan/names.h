@@ -30,11 +30,6 @@ void cell_set_add(struct cell_set *set, const struct cell *cell);
 enum status method_expand(struct cell_set *set, const char *spec, const struct cell *pattern,
                           const struct scene_summary *summary, struct error *error);
 
-/* Fills what is missing (trees SIZE_MAX, width_px 0) from the scene's summary, makes the options
- * canonical, and gives the cell its name. A picture above FRAME_PIXELS_MAX is refused. */
-enum status cell_complete(struct arena *arena, struct cell *cell,
-                          const struct scene_summary *summary, struct error *error);
-
 /* One value of a list each, with the error that names it. */
 enum status trees_parse(const char *text, size_t *trees, struct error *error);
 enum status size_parse(const char *text, int *width_px, int *height_px, struct error *error);

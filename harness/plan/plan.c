@@ -71,8 +71,7 @@ static struct group group_read(struct arena *arena, struct json *object,
 static enum status plan_path(struct arena *arena, const char *name, const char **path,
                              struct error *error)
 {
-    const char *dot = strrchr(name, '.');
-    if (strchr(name, '/') || (dot && !strcmp(dot, ".json"))) {
+    if (strchr(name, '/') || path_ends_with(name, ".json")) {
         *path = name;
         return STATUS_OK;
     }
@@ -82,11 +81,9 @@ static enum status plan_path(struct arena *arena, const char *name, const char *
     glob_t found = {0};
     const char *names = "";
     glob(arena_printf(arena, "%s/scenes/plans/*.json", data_folder()), 0, NULL, &found);
-    for (size_t i = 0; i < found.gl_pathc; i++) {
-        const char *base = strrchr(found.gl_pathv[i], '/') + 1;
-        names = arena_printf(arena, "%s%s%.*s", names, i ? ", " : "",
-                             (int)(strlen(base) - strlen(".json")), base);
-    }
+    for (size_t i = 0; i < found.gl_pathc; i++)
+        names = arena_printf(arena, "%s%s%s", names, i ? ", " : "",
+                             path_stem(arena, found.gl_pathv[i]));
     globfree(&found);
     return error_set(error, STATUS_NOT_FOUND, "no plan '%s'; plans are %s, or a path of a .json",
                      name, *names ? names : "(none here)");
@@ -316,18 +313,6 @@ static void plan_fill(struct plan *plan, const struct plan_settings *settings)
     plan->hash = hash_text(hash, plan->backend);
 }
 
-static const char *plan_name_of(struct arena *arena, const char *path)
-{
-    if (!path)
-        return "command-line";
-    const char *base = strrchr(path, '/');
-    base = base ? base + 1 : path;
-    size_t length = strlen(base);
-    if (length > 5 && !strcmp(base + length - 5, ".json"))
-        length -= 5;
-    return arena_printf(arena, "%.*s", (int)length, base);
-}
-
 static enum status backend_check(const char *backend, struct error *error)
 {
     if (!backend)
@@ -367,7 +352,7 @@ enum status plan_load(struct arena *arena, const struct plan_request *request, s
     if (status)
         return status;
     struct plan *made = ARENA_NEW(arena, struct plan);
-    made->name = plan_name_of(arena, path);
+    made->name = path ? path_stem(arena, path) : "command-line";
     made->cells = set.cells;
     made->cells_count = set.count;
     made->backend = backend;

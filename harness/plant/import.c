@@ -18,12 +18,6 @@ enum {
 };
 static const size_t file_limit_bytes = (size_t)8 << 30;
 
-static bool ends_with(const char *path, const char *ending)
-{
-    size_t n = strlen(path), m = strlen(ending);
-    return n > m && strcasecmp(path + n - m, ending) == 0;
-}
-
 static enum status check_albedo(const char *path, const char *name, const float *albedo,
                                 struct error *error)
 {
@@ -44,8 +38,8 @@ enum status import_request(struct arena *arena, const char *path, const struct p
 {
     const struct plant_import none = {0};
     import = import ? import : &none;
-    if (!ends_with(path, ".obj") && !ends_with(path, ".ply") && !ends_with(path, ".gltf") &&
-        !ends_with(path, ".glb"))
+    if (!path_ends_with(path, ".obj") && !path_ends_with(path, ".ply") &&
+        !path_ends_with(path, ".gltf") && !path_ends_with(path, ".glb"))
         return error_set(
             error, STATUS_INVALID,
             "%s: is not a mesh format that can be read; allowed: .obj, .ply, .gltf, .glb", path);
@@ -179,7 +173,9 @@ static void hash_uris(struct arena *arena, const char *path, const char *text, s
     }
 }
 
-enum status import_hash_files(const char *path, uint64_t *hash, struct error *error)
+/* Chains the hash of a mesh file's bytes and of every file that it names: .mtl, .bin, textures. A
+ * missing .mtl is STATUS_NOT_FOUND; missing textures are told when they are decoded. */
+static enum status hash_files(const char *path, uint64_t *hash, struct error *error)
 {
     struct arena *scratch = arena_create(0);
     char *text;
@@ -189,9 +185,9 @@ enum status import_hash_files(const char *path, uint64_t *hash, struct error *er
         status = error_set(error, STATUS_INVALID, "%s: is empty", path);
     if (status == STATUS_OK) {
         *hash = hash_bytes(*hash, text, size);
-        if (ends_with(path, ".obj"))
+        if (path_ends_with(path, ".obj"))
             status = each_line(scratch, path, text, size, "mtllib", take_library, hash, error);
-        else if (ends_with(path, ".ply"))
+        else if (path_ends_with(path, ".ply"))
             each_line(scratch, path, text, size < 65536 ? size : 65536, "comment TextureFile",
                       take_map, hash, NULL);
         else
@@ -212,7 +208,7 @@ enum status import_hash(const struct import_request *request, uint64_t *hash, st
         h = hash_double(h, request->leaf_albedo ? (double)request->leaf_albedo[k] : -1);
         h = hash_double(h, request->bark_albedo ? (double)request->bark_albedo[k] : -1);
     }
-    enum status status = import_hash_files(request->path, &h, error);
+    enum status status = hash_files(request->path, &h, error);
     *hash = h;
     return status;
 }

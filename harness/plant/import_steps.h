@@ -13,9 +13,6 @@ struct import_request {
     const float *leaf_albedo, *bark_albedo;
 };
 
-/* Chains the hash of a mesh file's bytes and of every file that it names: .mtl, .bin, textures. A
- * missing .mtl is STATUS_NOT_FOUND; missing textures are told when they are decoded. */
-enum status import_hash_files(const char *path, uint64_t *hash, struct error *error);
 /* Where a file named inside the mesh file at path is: beside the mesh file, by its whole name or
  * its last part. NULL when neither exists. */
 const char *import_resolve(struct arena *arena, const char *path, const char *name);

@@ -73,8 +73,8 @@ static enum status read_image(struct arena *arena, const char *path, const char 
         status = image_read(arena, file, true, image, error);
     }
     if (status != STATUS_OK)
-        return error_context(error, "%s: material '%s'", path, material);
-    return STATUS_OK;
+        error_context(error, "%s: material '%s'", path, material);
+    return status;
 }
 
 static float clamp01(float x)
@@ -144,8 +144,8 @@ enum status import_texture(struct arena *arena, const char *path,
         status = read_image(scratch, path, material->name, material->color, &color, error);
     if (status == STATUS_OK && material->opacity)
         status = read_image(scratch, path, material->name, material->opacity, &opacity, error);
-    if (status == STATUS_OK) {
-        const struct image *size = color ? color : opacity;
+    const struct image *size = color ? color : opacity;
+    if (status == STATUS_OK && size) {
         struct texture *made = ARENA_NEW(arena, struct texture);
         made->width_px = size->width_px;
         made->height_px = size->height_px;

@@ -9,15 +9,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Mean over compared views of one metric; NaN values do not count. */
-static double mean_over_views(const struct result *result, size_t comparison, size_t part,
-                              size_t field)
+static const struct metrics *same_value(const struct result_view *view)
+{
+    return &view->same.value;
+}
+
+static const struct metrics *full_value(const struct result_view *view)
+{
+    return &view->full.value;
+}
+
+static const struct metrics *same_floor(const struct result_view *view)
+{
+    return &view->same.floor;
+}
+
+/* One metric's mean over compared views; NaN values do not count. */
+static double mean_over_views(const struct result *result,
+                              const struct metrics *(*part)(const struct result_view *view),
+                              const struct metric_info *info)
 {
     double sum = 0;
     size_t count = 0;
     for (size_t i = 0; i < result->views_count; i++) {
-        const char *view = (const char *)&result->views[i];
-        double value = *(const double *)(view + comparison + part + field);
+        double value = metric_of(part(&result->views[i]), info);
         if (result->views[i].compared && !isnan(value)) {
             sum += value;
             count++;
@@ -66,17 +81,13 @@ static void fill_scalars(const struct run *run, struct row *row)
 static void fill_errors(struct row *row)
 {
     const struct result *seen = row->seen;
-    size_t same = offsetof(struct result_view, same), full = offsetof(struct result_view, full);
-    size_t value = offsetof(struct comparison, value), floor = offsetof(struct comparison, floor);
-#define FILL(field, word, better, domain, doc)                                                     \
-    row->values[COLUMN_same_##field] =                                                             \
-        mean_over_views(seen, same, value, offsetof(struct metrics, field));                       \
-    row->values[COLUMN_full_##field] =                                                             \
-        mean_over_views(seen, full, value, offsetof(struct metrics, field));                       \
-    row->values[COLUMN_floor_##field] =                                                            \
-        mean_over_views(seen, same, floor, offsetof(struct metrics, field));
-    METRIC_LIST(FILL)
-#undef FILL
+    /* The columns of a part stand in the order of the table. */
+    for (size_t k = 0; metric_table[k].field; k++) {
+        const struct metric_info *info = &metric_table[k];
+        row->values[COLUMN_same_rmse + k] = mean_over_views(seen, same_value, info);
+        row->values[COLUMN_full_rmse + k] = mean_over_views(seen, full_value, info);
+        row->values[COLUMN_floor_rmse + k] = mean_over_views(seen, same_floor, info);
+    }
     row->values[COLUMN_same_standard_error] = mean_standard_error(seen, false);
     row->values[COLUMN_full_standard_error] = mean_standard_error(seen, true);
     if (seen->has_flicker) {

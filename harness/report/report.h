@@ -20,12 +20,8 @@ struct summary {
 /* In the order in which the cells first occur in the run. */
 struct summary *report_summaries(struct arena *arena, const struct run *run, size_t *count);
 
-/* Of one scene, tree count, size and seed: the cells that a front is made of. */
-bool report_comparable(const struct result *a, const struct result *b);
 size_t report_trees(const struct result *result);
 bool report_is_floor(const struct result *result); /* method null */
-/* Mean FLIP over the compared views, same effects; NaN without one. */
-double report_flip(const struct result *result);
 
 /* Writes OUT/index.html (self-contained), OUT/plots/NAME.{dat,gp,svg,png},
  * OUT/tables/results.{md,csv,tex} and OUT/pictures/NAME.png (full size). A picture or reference

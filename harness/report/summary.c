@@ -12,7 +12,8 @@ size_t report_trees(const struct result *result)
     return result->cell.trees == SIZE_MAX ? result->instances : result->cell.trees;
 }
 
-bool report_comparable(const struct result *a, const struct result *b)
+/* Of one scene, tree count, size and seed: the cells that a front is made of. */
+static bool comparable(const struct result *a, const struct result *b)
 {
     return strcmp(a->cell.scene, b->cell.scene) == 0 && report_trees(a) == report_trees(b) &&
            a->cell.width_px == b->cell.width_px && a->cell.height_px == b->cell.height_px &&
@@ -24,7 +25,8 @@ bool report_is_floor(const struct result *result)
     return strcmp(result->cell.method_name, "null") == 0;
 }
 
-double report_flip(const struct result *result)
+/* Mean FLIP over the compared views, same effects; NaN without one. */
+static double mean_flip(const struct result *result)
 {
     double sum = 0;
     size_t count = 0;
@@ -41,8 +43,7 @@ static const struct result *best_of(const struct result *known, const struct res
 {
     if (!known || (known->status != STATUS_OK && candidate->status == STATUS_OK))
         return candidate;
-    if (candidate->status == STATUS_OK && isnan(report_flip(known)) &&
-        !isnan(report_flip(candidate)))
+    if (candidate->status == STATUS_OK && isnan(mean_flip(known)) && !isnan(mean_flip(candidate)))
         return candidate;
     return known;
 }
@@ -75,11 +76,11 @@ static void mark_front(struct arena *arena, struct summary *summaries, size_t co
     size_t *members = ARENA_ARRAY(arena, size_t, count), members_count = 0;
     for (size_t i = leader; i < count; i++) {
         const struct result *result = summaries[i].first;
-        if (!report_comparable(summaries[leader].first, result))
+        if (!comparable(summaries[leader].first, result))
             continue;
         bool fit = result->status == STATUS_OK && !report_is_floor(result);
         cost[members_count] = fit ? summaries[i].frame_seconds.value : NAN;
-        error[members_count] = fit ? report_flip(result) : NAN;
+        error[members_count] = fit ? mean_flip(result) : NAN;
         members[members_count++] = i;
     }
     stats_pareto(cost, error, members_count, on_front);
@@ -107,7 +108,7 @@ struct summary *report_summaries(struct arena *arena, const struct run *run, siz
     for (size_t i = 0; i < *count; i++) {
         bool led = true; /* by an earlier cell of its group */
         for (size_t k = 0; k < i && led; k++)
-            led = !report_comparable(summaries[k].first, summaries[i].first);
+            led = !comparable(summaries[k].first, summaries[i].first);
         if (led)
             mark_front(scratch, summaries, *count, i);
     }

@@ -8,27 +8,12 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool ends_with(const char *text, const char *end)
-{
-    size_t text_length = strlen(text), end_length = strlen(end);
-    return text_length >= end_length && strcmp(text + text_length - end_length, end) == 0;
-}
-
-/* The file's name without folder and ending. */
-static const char *name_of(struct arena *arena, const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    char *name = arena_strdup(arena, slash ? slash + 1 : path);
-    if (ends_with(name, ".json"))
-        name[strlen(name) - strlen(".json")] = '\0';
-    return name;
-}
-
-enum status scene_find(struct arena *arena, const char *name, const char **path,
-                       struct error *error)
+/* The file of a scene's name or path, STATUS_NOT_FOUND with the nearest name. */
+static enum status scene_find(struct arena *arena, const char *name, const char **path,
+                              struct error *error)
 {
     *path = arena_strdup(arena, name);
-    if (ends_with(name, ".json"))
+    if (path_ends_with(name, ".json"))
         return file_exists(name)
                    ? STATUS_OK
                    : error_set(error, STATUS_NOT_FOUND, "%s: no such scene file", name);
@@ -129,7 +114,7 @@ enum status description_load(struct arena *arena, const char *name, struct descr
     enum status status = scene_find(arena, name, &description->path, error);
     if (status != STATUS_OK)
         return status;
-    description->name = name_of(arena, description->path);
+    description->name = path_stem(arena, description->path);
     struct json_doc *doc = json_load(arena, description->path, error);
     if (!doc)
         return error->status;

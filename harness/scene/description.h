@@ -59,10 +59,6 @@ struct description {
     double extent_min_m;
 };
 
-/* The file of a scene's name or path, STATUS_NOT_FOUND with the nearest name. */
-enum status scene_find(struct arena *arena, const char *name, const char **path,
-                       struct error *error);
-
 /* Reads and checks scene.json. scenes/README.md documents every key. */
 enum status description_load(struct arena *arena, const char *name, struct description *description,
                              struct error *error);

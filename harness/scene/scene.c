@@ -257,8 +257,7 @@ enum status scene_names(struct arena *arena, char ***names, size_t *count, struc
     *count = (size_t)found;
     *names = ARENA_ARRAY(arena, char *, *count);
     for (size_t k = 0; k < *count; k++) {
-        (*names)[k] = arena_strdup(arena, entries[k]->d_name);
-        (*names)[k][strlen((*names)[k]) - strlen(".json")] = '\0';
+        (*names)[k] = path_stem(arena, entries[k]->d_name);
         free(entries[k]);
     }
     free(entries);

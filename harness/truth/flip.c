@@ -83,12 +83,13 @@ static float hyab(const float a[3], const float b[3])
 
 static void sensitivity_weights(struct sensitivity s, int radius, double *weights)
 {
+    int count = 2 * radius + 1;
     double sum = 0;
-    for (int k = -radius; k <= radius; k++) {
-        double x = k / PIXELS_PER_DEGREE;
-        sum += weights[k + radius] = exp(-PI * PI * x * x / s.b);
+    for (int k = 0; k < count; k++) {
+        double x = (k - radius) / PIXELS_PER_DEGREE;
+        sum += weights[k] = exp(-PI * PI * x * x / s.b);
     }
-    for (int k = 0; k <= 2 * radius; k++)
+    for (int k = 0; k < count; k++)
         weights[k] /= sum;
 }
 
@@ -98,19 +99,19 @@ static void sensitivity_weights(struct sensitivity s, int radius, double *weight
 static void blue_yellow_weights(int radius, double *first, double *second)
 {
     double *weights[2] = {first, second};
+    int count = 2 * radius + 1;
     double total = 0;
     for (int i = 0; i < 2; i++) {
         struct sensitivity s = blue_yellow[i];
         double sum = 0;
-        for (int k = -radius; k <= radius; k++) {
-            double x = k / PIXELS_PER_DEGREE;
-            sum += weights[i][k + radius] =
-                sqrt(s.a * sqrt(PI / s.b)) * exp(-PI * PI * x * x / s.b);
+        for (int k = 0; k < count; k++) {
+            double x = (k - radius) / PIXELS_PER_DEGREE;
+            sum += weights[i][k] = sqrt(s.a * sqrt(PI / s.b)) * exp(-PI * PI * x * x / s.b);
         }
         total += sum * sum;
     }
     for (int i = 0; i < 2; i++)
-        for (int k = 0; k <= 2 * radius; k++)
+        for (int k = 0; k < count; k++)
             weights[i][k] /= sqrt(total);
 }
 
@@ -127,17 +128,19 @@ static void balance(double *weights, int count)
 /* Section 4.2.1: a Gaussian of half the feature's width and its first two derivatives. */
 static void feature_weights(int radius, double sigma, double *smooth, double *first, double *second)
 {
+    int count = 2 * radius + 1;
     double sum = 0;
-    for (int k = -radius; k <= radius; k++) {
-        double value = exp(-k * k / (2 * sigma * sigma));
-        sum += smooth[k + radius] = value;
-        first[k + radius] = -k * value;
-        second[k + radius] = (k * k / (sigma * sigma) - 1) * value;
+    for (int k = 0; k < count; k++) {
+        int x = k - radius;
+        double value = exp(-x * x / (2 * sigma * sigma));
+        sum += smooth[k] = value;
+        first[k] = -x * value;
+        second[k] = (x * x / (sigma * sigma) - 1) * value;
     }
-    for (int k = 0; k <= 2 * radius; k++)
+    for (int k = 0; k < count; k++)
         smooth[k] /= sum;
-    balance(first, 2 * radius + 1);
-    balance(second, 2 * radius + 1);
+    balance(first, count);
+    balance(second, count);
 }
 
 /* Features of one picture */

@@ -8,8 +8,12 @@
 #include <stdint.h>
 #include <string.h>
 
-#define MAGIC "TLFRAME1"
-enum { MAGIC_BYTES = 8, HEADER_BYTES = MAGIC_BYTES + 3 * 4, HASH_BYTES = 8, FLAG_VARIANCE = 1 };
+enum {
+    MAGIC_BYTES = sizeof FRAME_FILE_MAGIC - 1,
+    HEADER_BYTES = MAGIC_BYTES + 3 * 4,
+    HASH_BYTES = 8,
+    FLAG_VARIANCE = 1
+};
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is little endian, as written");
 
@@ -43,7 +47,7 @@ void *frame_pack(struct arena *arena, const struct frame *frame, size_t *size)
     int32_t header[3] = {frame->width_px, frame->height_px, frame->variance ? FLAG_VARIANCE : 0};
     *size = HEADER_BYTES + plane * (frame->variance ? 2 : 1) + HASH_BYTES;
     unsigned char *data = arena_alloc(arena, *size, 1);
-    memcpy(data, MAGIC, MAGIC_BYTES);
+    memcpy(data, FRAME_FILE_MAGIC, MAGIC_BYTES);
     memcpy(data + MAGIC_BYTES, header, sizeof header);
     memcpy(data + HEADER_BYTES, frame->rgba, plane);
     if (frame->variance)
@@ -60,9 +64,9 @@ static enum status check_header(const unsigned char *data, size_t size, const ch
     if (size < HEADER_BYTES + HASH_BYTES)
         return error_set(error, STATUS_INVALID, "%s: %zu bytes are too few for a frame file", name,
                          size);
-    if (memcmp(data, MAGIC, MAGIC_BYTES) != 0)
+    if (memcmp(data, FRAME_FILE_MAGIC, MAGIC_BYTES) != 0)
         return error_set(error, STATUS_INVALID, "%s: not a frame file (no %s at its start)", name,
-                         MAGIC);
+                         FRAME_FILE_MAGIC);
     memcpy(header, data + MAGIC_BYTES, 3 * sizeof *header);
     if (header[0] < 1 || header[1] < 1 || header[0] > FRAME_SIDE_MAX_PX ||
         header[1] > FRAME_SIDE_MAX_PX || header[0] > FRAME_PIXELS_MAX / header[1])

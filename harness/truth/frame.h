@@ -25,10 +25,11 @@ struct frame {
 struct frame *frame_create(struct arena *arena, int width_px, int height_px, bool with_variance);
 
 /* treeline's own raw format, little endian, read and written without OpenImageIO, so that timed
- * processes need none: "TLFRAME1", int32 width, height, flags (1: variance follows), float32 rgba,
+ * processes need none: the magic, int32 width, height, flags (1: variance follows), float32 rgba,
  * float32 variance, and the XXH3-64 (hash_bytes from 0) of all that stands before it. Refused with
  * the file's name: another magic, unknown flags, a size outside the limits, a length that the size
  * does not give, a wrong hash. */
+#define FRAME_FILE_MAGIC "TLFRAME1"
 enum status frame_save(const struct frame *frame, const char *path, struct error *error);
 enum status frame_load(struct arena *arena, const char *path, struct frame **frame,
                        struct error *error);

@@ -1,6 +1,8 @@
 /* Frames to images and back; error maps to colours. */
 #include "truth/frame_image.h"
 
+#include "base/file.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,13 +22,6 @@ static const float magma[17][3] = {
     {0.9928f, 0.8776f, 0.6335f}, {0.9871f, 0.9914f, 0.7495f},
 };
 
-struct image *frame_to_image(struct arena *arena, const struct frame *frame)
-{
-    struct image *image = ARENA_NEW(arena, struct image);
-    *image = (struct image){frame->width_px, frame->height_px, 4, frame->rgba, frame_names};
-    return image;
-}
-
 /* count channels of rgba and variance side by side. */
 static float *interleave(struct arena *arena, const struct frame *frame, size_t channels)
 {
@@ -41,8 +36,7 @@ static float *interleave(struct arena *arena, const struct frame *frame, size_t 
 
 enum status frame_write_image(const char *path, const struct frame *frame, struct error *error)
 {
-    const char *dot = strrchr(path, '.');
-    bool exr = dot && strcasecmp(dot, ".exr") == 0;
+    bool exr = path_ends_with(path, ".exr");
     struct arena *scratch = arena_create(0);
     size_t channels = !exr ? 3 : frame->variance ? 8 : 4;
     struct image image = {frame->width_px, frame->height_px, (int)channels,
@@ -103,13 +97,13 @@ static enum status image_to_frame(struct arena *arena, const struct image *image
 
 static bool is_frame_file(const char *path)
 {
-    char start[8] = "";
+    char start[sizeof FRAME_FILE_MAGIC - 1];
     struct stat info;
     FILE *file = stat(path, &info) == 0 && S_ISREG(info.st_mode) ? fopen(path, "rb") : NULL;
     if (!file)
         return false;
     bool is = fread(start, 1, sizeof start, file) == sizeof start &&
-              memcmp(start, "TLFRAME1", sizeof start) == 0;
+              memcmp(start, FRAME_FILE_MAGIC, sizeof start) == 0;
     fclose(file);
     return is;
 }

@@ -20,9 +20,6 @@ enum status frame_write_image(const char *path, const struct frame *frame, struc
 enum status frame_read_image(struct arena *arena, const char *path, struct frame **frame,
                              bool *has_coverage, struct error *error);
 
-/* Linear RGBA of a frame as an image over the frame's own memory. */
-struct image *frame_to_image(struct arena *arena, const struct frame *frame);
-
 /* A map of errors as colours from black through violet and orange to pale yellow (matplotlib's
  * magma, CC0, S. van der Walt and N. Smith; 17 of its colours, linear between). map: height x
  * width; 0 to full; values outside are clamped, NaN is 0. The image is R, G, B and already

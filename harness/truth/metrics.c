@@ -14,6 +14,12 @@ const struct metric_info metric_table[] = {
         {NULL, NULL, NULL, NULL, 0, 0},
 };
 
+double metric_of(const struct metrics *metrics, const struct metric_info *info)
+{
+    const void *field = (const char *)metrics + info->offset;
+    return *(const double *)field;
+}
+
 static enum status check_pair(const struct frame *test, const struct frame *reference,
                               struct error *error)
 {

@@ -61,6 +61,7 @@ struct metric_info {
     size_t offset; /* in struct metrics */
 };
 extern const struct metric_info metric_table[]; /* ends with a NULL field */
+double metric_of(const struct metrics *metrics, const struct metric_info *info);
 
 /* All metrics of a pair; of exact pictures value is raw and floor is 0 (psnr 100, ssim 1). */
 struct comparison {

@@ -212,7 +212,7 @@ enum status traced_scene_build(struct arena *arena, const struct scene *scene, i
     for (size_t i = 0; i < scene->instances_count; i++) {
         const struct instance *instance = &scene->instances[i];
         const struct traced_mesh *mesh = &meshes[instance->species];
-        mat4 matrix;
+        mat4 matrix = GLM_MAT4_IDENTITY_INIT;
         instance_matrix(instance, matrix);
         add_instance(traced, i, matrix, mesh->number, mesh->first_surface, instance->rotation_rad);
     }

@@ -40,7 +40,7 @@ static enum status load(struct egl *egl, struct error *error)
     static const char *const names[] = {"libEGL.so.1", "libEGL.so", NULL};
     void *library = gl_library(names, error);
     if (!library)
-        return error->status;
+        return STATUS_UNAVAILABLE;
 #define LOAD(field, name)                                                                          \
     if (!(egl->field = (__typeof__(egl->field))gl_symbol(library, name)))                          \
     return error_set(error, STATUS_UNAVAILABLE, "libEGL lacks %s", name)
@@ -145,7 +145,7 @@ static enum status open_device(struct egl *egl, bool want_gpu, struct error *err
 static enum status create(const char *name, enum status (*open)(struct egl *, bool, struct error *),
                           bool want_gpu, void **context, struct error *error)
 {
-    struct error unread; /* the openers read back what they set */
+    struct error unread = {0}; /* the openers read back what they set */
     error = error ? error : &unread;
     struct egl *egl = calloc(1, sizeof *egl);
     if (!egl)

@@ -11,7 +11,6 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,16 +21,15 @@ static const char *const names_y[] = {"Y"};
 static const char *const names_ya[] = {"Y", "A"};
 static const char *const names_rgba[] = {"R", "G", "B", "A"};
 
-/* The folder of the executable, its parent and parent/lib/treeline, then PREFIX/lib/treeline; tried
- * in this order, so that a build finds its own shim and an installation may be moved. */
+/* From beside the executable (a build), the folder above (its tests), or PREFIX/lib/treeline of a
+ * program in PREFIX/bin. */
 static const struct oiio_calls *load_shim(struct error *error)
 {
     char self[PATH_MAX] = "";
     ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
     self[length > 0 ? length : 0] = 0;
     const char *folder = dirname(self);
-    const char *formats[] = {"%s/" SHIM, "%s/../" SHIM, "%s/../lib/treeline/" SHIM,
-                             TREELINE_PREFIX "/lib/treeline/" SHIM};
+    const char *formats[] = {"%s/" SHIM, "%s/../" SHIM, "%s/../lib/treeline/" SHIM};
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         char path[PATH_MAX + 64];
         snprintf(path, sizeof path, formats[i], folder);
@@ -50,9 +48,9 @@ static const struct oiio_calls *load_shim(struct error *error)
         return NULL;
     }
     error_set(error, STATUS_UNAVAILABLE,
-              "no images can be read or written here: %s is neither beside the executable, nor in "
-              "the folder above, nor in %s/lib/treeline",
-              SHIM, TREELINE_PREFIX);
+              "no images can be read or written here: " SHIM " is neither in %s, nor in the folder "
+              "above it, nor in lib/treeline there",
+              folder);
     return NULL;
 }
 
@@ -123,7 +121,7 @@ enum status image_read(struct arena *arena, const char *path, bool linear, struc
     struct error shim_error;
     const struct oiio_calls *calls = load_shim(&shim_error);
     if (!calls)
-        return error_set(error, shim_error.status, "%s: %s", path, shim_error.text);
+        return error_set(error, STATUS_UNAVAILABLE, "%s: %s", path, shim_error.text);
     char message[512] = "";
     struct oiio_context context = {allocate, arena, message, sizeof message};
     struct oiio_picture picture = {0};
@@ -201,7 +199,7 @@ static enum status encode_image(struct arena *arena, const char *path, const str
     struct error shim_error;
     const struct oiio_calls *calls = load_shim(&shim_error);
     if (!calls)
-        return error_set(error, shim_error.status, "%s: %s", path, shim_error.text);
+        return error_set(error, STATUS_UNAVAILABLE, "%s: %s", path, shim_error.text);
     const char *const *names = image->names ? image->names : default_names(image->channels_count);
     struct oiio_picture picture = {
         image->width_px, image->height_px, image->channels_count, NULL, NULL, -1, encode};
@@ -222,8 +220,7 @@ static enum status encode_image(struct arena *arena, const char *path, const str
 
 enum status image_path_check(const char *path, struct error *error)
 {
-    const char *dot = strrchr(path, '.');
-    if (dot && (strcasecmp(dot, ".exr") == 0 || strcasecmp(dot, ".png") == 0))
+    if (path_ends_with(path, ".exr") || path_ends_with(path, ".png"))
         return STATUS_OK;
     return error_set(error, STATUS_INVALID, "%s: pictures are written as .exr or .png", path);
 }
@@ -234,7 +231,7 @@ enum status image_write(const char *path, const struct image *image, int bits, b
     enum status status = image_path_check(path, error);
     if (status != STATUS_OK)
         return status;
-    bool exr = strcasecmp(strrchr(path, '.'), ".exr") == 0;
+    bool exr = path_ends_with(path, ".exr");
     struct arena *scratch = arena_create(0);
     uint8_t *bytes;
     size_t size;

@@ -31,7 +31,7 @@ struct json {
     const char *key; /* NULL for elements of arrays and the root */
     size_t index;
     enum json_type type;
-    bool asked, free_keys;
+    bool asked;
     double number; /* bool: 0 or 1 */
     const char *text;
     size_t children_count;
@@ -102,7 +102,7 @@ static void convert_children(struct json *node, const cJSON *item, int depth)
         if (child->string)
             to->key = arena_strdup(doc->arena, child->string);
         for (size_t i = 0; i < index && to->key && node->children_count <= 4096; i++)
-            if (strcmp(node->children[i].key, to->key) == 0)
+            if (node->children[i].key && strcmp(node->children[i].key, to->key) == 0)
                 fail(doc, to, NULL, "stands here twice");
         convert(to, child, depth + 1);
     }
@@ -202,7 +202,7 @@ static void check_asked(const struct json *node)
 {
     for (size_t i = 0; i < node->children_count; i++) {
         const struct json *child = &node->children[i];
-        if (node->type == JSON_OBJECT && !child->asked && !node->free_keys)
+        if (node->type == JSON_OBJECT && !child->asked)
             fail_unknown(child);
         check_asked(child);
     }
@@ -373,14 +373,6 @@ const char *json_element_text(struct json *object, const char *key, size_t index
 {
     struct json *element = element_typed(object, key, index, JSON_TEXT);
     return element ? element->text : "";
-}
-
-const char *json_key(struct json *object, size_t index)
-{
-    if (!object || object->type != JSON_OBJECT)
-        return NULL;
-    object->free_keys = true;
-    return index < object->children_count ? object->children[index].key : NULL;
 }
 
 uint64_t json_u64(struct json *object, const char *key)

@@ -57,8 +57,6 @@ struct json *json_element(struct json *object, const char *key,
 double json_element_number(struct json *object, const char *key, size_t index, double minimum,
                            double maximum);
 const char *json_element_text(struct json *object, const char *key, size_t index);
-/* Keys of an object with free keys (effects by name ...): marks all as known. */
-const char *json_key(struct json *object, size_t index); /* NULL past the end */
 /* A semantic error at a key, in the same form; sticky. */
 enum status json_fail(struct json *object, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -1,5 +1,6 @@
 /* Mesh files through assimp's C interface: the only file that knows assimp. */
 #include "base/color.h"
+#include "base/file.h"
 #include "wall/mesh_import_parts.h"
 #include "wall/mesh_import_ply.h"
 
@@ -11,7 +12,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 struct import {
     struct arena *arena;
@@ -27,12 +27,6 @@ struct import {
 static float clamp01(float x)
 {
     return fminf(1, fmaxf(0, x));
-}
-
-static bool ends_with(const char *path, const char *ending)
-{
-    size_t n = strlen(path), m = strlen(ending);
-    return n >= m && strcasecmp(path + n - m, ending) == 0;
 }
 
 static const struct import_texture *texture(struct import *import, const struct aiMaterial *from,
@@ -279,8 +273,8 @@ enum status mesh_import_assimp(struct arena *arena, const char *path, size_t tri
                                struct import_soup **soup, struct error *error)
 {
     /* OBJ has colours only by a custom that stores encoded ones; glTF's are linear. */
-    bool colors_encoded = ends_with(path, ".obj");
-    if (ends_with(path, ".ply") && ply_check(path, &colors_encoded, error) != STATUS_OK)
+    bool colors_encoded = path_ends_with(path, ".obj");
+    if (path_ends_with(path, ".ply") && ply_check(path, &colors_encoded, error) != STATUS_OK)
         return STATUS_INVALID;
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     aiSetImportPropertyInteger(properties, AI_CONFIG_PP_SBP_REMOVE,
