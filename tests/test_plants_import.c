@@ -1,8 +1,10 @@
-/* Imported plants: small OBJ, PLY, glTF and GLB files are written here and read back; bad ones are
- * refused. */
+/* Imported plants: small OBJ, PLY, glTF and GLB files are written and read back; bad ones refused. */
 #include "testing.h"
 
+#include "plant_files.h"
+
 #include "base/file.h"
+#include "plant/import_steps.h"
 #include "plant/normals.h"
 #include "plant/plant.h"
 
@@ -12,120 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Writing files */
-
-static void put(const char *path, const void *bytes, size_t size)
-{
-    struct error error = {0};
-    if (file_write(path, bytes, size, &error) != STATUS_OK)
-        fail_msg("%s", error.text);
-}
-
-static void put_text(const char *path, const char *text)
-{
-    put(path, text, strlen(text));
-}
-
-struct bytes {
-    unsigned char at[65536];
-    size_t size;
-};
-
-static void add(struct bytes *bytes, const void *from, size_t size)
-{
-    assert_true(bytes->size + size <= sizeof bytes->at);
-    memcpy(bytes->at + bytes->size, from, size);
-    bytes->size += size;
-}
-
-static void add_u32_big(struct bytes *bytes, uint32_t x)
-{
-    unsigned char b[4] = {(unsigned char)(x >> 24), (unsigned char)(x >> 16),
-                          (unsigned char)(x >> 8), (unsigned char)x};
-    add(bytes, b, 4);
-}
-
-static uint32_t crc32_of(const unsigned char *bytes, size_t size)
-{
-    uint32_t crc = 0xffffffff;
-    for (size_t i = 0; i < size; i++) {
-        crc ^= bytes[i];
-        for (int k = 0; k < 8; k++)
-            crc = crc & 1 ? crc >> 1 ^ 0xedb88320 : crc >> 1;
-    }
-    return ~crc;
-}
-
-static void add_chunk(struct bytes *png, const char *type, const void *data, size_t size)
-{
-    add_u32_big(png, (uint32_t)size);
-    size_t start = png->size;
-    add(png, type, 4);
-    add(png, data, size);
-    add_u32_big(png, crc32_of(png->at + start, size + 4));
-}
-
-/* A PNG of 8-bit RGBA texels, row 0 on top: one stored (uncompressed) deflate block. */
-static struct bytes *png_of(const unsigned char *rgba, uint32_t width, uint32_t height)
-{
-    static struct bytes png, raw, header, stream;
-    png.size = raw.size = header.size = stream.size = 0;
-    add(&png, "\x89PNG\r\n\x1a\n", 8);
-    add_u32_big(&header, width);
-    add_u32_big(&header, height);
-    add(&header, "\x08\x06\0\0\0", 5);
-    for (uint32_t y = 0; y < height; y++) {
-        add(&raw, "", 1);
-        add(&raw, rgba + (size_t)4 * width * y, (size_t)4 * width);
-    }
-    uint32_t a = 1, b = 0;
-    for (size_t i = 0; i < raw.size; i++) {
-        a = (a + raw.at[i]) % 65521;
-        b = (b + a) % 65521;
-    }
-    unsigned char block[7] = {0x78,
-                              0x01,
-                              0x01,
-                              (unsigned char)raw.size,
-                              (unsigned char)(raw.size >> 8),
-                              (unsigned char)~raw.size,
-                              (unsigned char)(~raw.size >> 8)};
-    add(&stream, block, 7);
-    add(&stream, raw.at, raw.size);
-    add_u32_big(&stream, b << 16 | a);
-    add_chunk(&png, "IHDR", header.at, header.size);
-    add_chunk(&png, "IDAT", stream.at, stream.size);
-    add_chunk(&png, "IEND", "", 0);
-    return &png;
-}
-
-/* 2 x 2 texels: on top a green and a red one, below a grey one and a hole. */
-static const unsigned char leaf_texels[16] = {0,   255, 0,   255, 255, 0, 0, 255,
-                                              188, 188, 188, 255, 0,   0, 0, 0};
-
-static struct bytes *leaf_png(void)
-{
-    return png_of(leaf_texels, 2, 2);
-}
-
-static const char *base64(const struct bytes *bytes)
-{
-    static char text[90000];
-    const char *letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    size_t n = 0;
-    for (size_t i = 0; i < bytes->size; i += 3) {
-        uint32_t v = 0;
-        for (size_t k = 0; k < 3; k++)
-            v = v << 8 | (i + k < bytes->size ? bytes->at[i + k] : 0);
-        for (size_t k = 0; k < 4; k++)
-            text[n++] = i + k > bytes->size ? '=' : letters[v >> (18 - 6 * k) & 63];
-    }
-    text[n] = '\0';
-    return text;
-}
-
-/* A trunk (a box of 0.2 x 2 x 0.2 standing at x = 5) and three leaves: two quads and one triangle.
- */
+/* A trunk (a box of 0.2 x 2 x 0.2 that stands at x = 5) and leaves: two quads and one triangle. */
 static const char tree_obj[] = "mtllib tree.mtl\n"
                                "v 4.9 1 -0.1\nv 5.1 1 -0.1\nv 5.1 1 0.1\nv 4.9 1 0.1\n"
                                "v 4.9 3 -0.1\nv 5.1 3 -0.1\nv 5.1 3 0.1\nv 4.9 3 0.1\n"
@@ -506,20 +395,39 @@ static bool same_mesh(const struct mesh *a, const struct mesh *b)
                   b->materials[b->parts[1].material].texture->rgba, 16 * sizeof(float)) == 0;
 }
 
-static void test_cache__gives_the_same_mesh_and_does_without_the_image_library(void **state)
+static void test_cache__keeps_a_mesh_whole_and_refuses_torn_bytes(void **state)
 {
     (void)state;
     put_tree();
     struct arena *arena = arena_create(0);
     setenv("TREELINE_CACHE", "off", 1);
-    const struct mesh *plain = imported(arena, "tree.obj", NULL);
+    const struct mesh *mesh = imported(arena, "tree.obj", NULL);
     setenv("TREELINE_CACHE", "cache", 1);
+    size_t size;
+    void *bytes = import_encode(arena, mesh, &size);
+    struct mesh *decoded = import_decode(arena, bytes, size);
+    assert_non_null(decoded);
+    assert_int_equal(mesh_check(decoded, NULL), STATUS_OK);
+    assert_true(same_mesh(mesh, decoded));
+    assert_vector(decoded->maximum_m, 3, 4, 2);
+    assert_string_equal(decoded->materials[decoded->parts[1].material].name, "Blatt_Leaf");
+    for (size_t torn = 0; torn < size; torn++)
+        assert_null(import_decode(arena, bytes, torn));
+    arena_destroy(arena);
+}
+
+static void test_cache__is_used_and_gives_the_same_mesh(void **state)
+{
+    (void)state;
+    put_tree();
+    struct arena *arena = arena_create(0);
+    assert_int_equal(cache_trim(0, &(size_t){0}, NULL), STATUS_OK);
     const struct mesh *first = imported(arena, "tree.obj", NULL);
+    size_t removed = 0;
     const struct mesh *second = imported(arena, "tree.obj", NULL);
-    assert_true(same_mesh(plain, first));
-    assert_true(same_mesh(plain, second));
-    assert_vector(second->maximum_m, 3, 4, 2);
-    assert_string_equal(second->materials[second->parts[1].material].name, "Blatt_Leaf");
+    assert_true(same_mesh(first, second));
+    assert_int_equal(cache_trim(0, &removed, NULL), STATUS_OK);
+    assert_true(removed > 0);
     arena_destroy(arena);
 }
 
@@ -677,7 +585,8 @@ int main(void)
         cmocka_unit_test(test_gltf__applies_nodes_mirrors_and_linear_colours),
         cmocka_unit_test(test_gltf__opaque_materials_have_no_holes_and_cutoffs_are_kept),
         cmocka_unit_test(test_glb__holds_its_buffer_and_its_texture),
-        cmocka_unit_test(test_cache__gives_the_same_mesh_and_does_without_the_image_library),
+        cmocka_unit_test(test_cache__keeps_a_mesh_whole_and_refuses_torn_bytes),
+        cmocka_unit_test(test_cache__is_used_and_gives_the_same_mesh),
         cmocka_unit_test(test_hash__changes_with_any_of_the_files),
         cmocka_unit_test(test_degenerate_triangles__are_dropped),
         cmocka_unit_test(test_files__that_are_missing_empty_or_folders_are_refused),
