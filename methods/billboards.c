@@ -5,7 +5,7 @@
 #include "billboards.glsl.h"
 
 struct options {
-    int views, layout, pick, resolution, alpha, samples;
+    int views, layout, pick, resolution, alpha, filter, samples;
     bool depth;
 };
 
@@ -18,8 +18,10 @@ static const struct option table[] = {
     OPTION_WORD(struct options, pick, 0, "nearest|blended",
                 "one picture, or the 2 (circle) or 3 (square layouts) nearest by weight"),
     OPTION(struct options, resolution, 256, 8, 2048, "px", "texels along a plant's longest extent"),
-    OPTION_WORD(struct options, alpha, 0, "blend|test|coverage",
+    OPTION_WORD(struct options, alpha, 1, "blend|test|coverage",
                 "sorted blending, alpha test, or 4 samples a pixel"),
+    OPTION_WORD(struct options, filter, 0, "bilinear|nearest",
+                "texels of pictures that are not magnified"),
     OPTION(struct options, samples, 4, 1, 8, "",
            "samples along a texel's side when pictures are baked"),
     OPTION(struct options, depth, 0, 0, 1, "",
@@ -27,10 +29,6 @@ static const struct option table[] = {
     OPTION_END,
 };
 /* clang-format on */
-
-/* From this many pixels on the polygon of 8 corners costs less than the transparent corners of a
- * quad. */
-static const float hull_area_px = 1500;
 
 struct state {
     struct impostor *impostor;
@@ -73,6 +71,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .resolution_px = resolution_of(options, workspace->lod),
         .samples = options->samples,
         .alpha = (enum atlas_alpha)options->alpha,
+        .nearest = options->filter == 1,
         .depth = options->depth,
     };
     state->side = (int)request.side;
@@ -99,7 +98,7 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
     if (status != STATUS_OK)
         return status;
     size_t near =
-        state->hulls ? impostor_near_count(state->impostor, view, &list, hull_area_px) : 0;
+        state->hulls ? impostor_near_count(state->impostor, view, &list, IMPOSTOR_HULL_PX, 1) : 0;
     size_t far = list.count - near;
     if (state->impostor->alpha == ATLAS_BLEND) {
         draw_trees(workspace, state, view, state->quads, 0, far);

@@ -6,7 +6,7 @@
 #include "cross-quads.glsl.h"
 
 struct options {
-    int planes, resolution, alpha, samples;
+    int planes, resolution, alpha, filter, samples;
     bool depth;
 };
 
@@ -14,8 +14,10 @@ struct options {
 static const struct option table[] = {
     OPTION(struct options, planes, 2, 2, 8, "", "vertical planes a tree, evenly turned"),
     OPTION(struct options, resolution, 256, 8, 2048, "px", "texels along a plant's longest extent"),
-    OPTION_WORD(struct options, alpha, 0, "blend|test|coverage",
+    OPTION_WORD(struct options, alpha, 1, "blend|test|coverage",
                 "sorted blending, alpha test, or 4 samples a pixel"),
+    OPTION_WORD(struct options, filter, 1, "bilinear|nearest",
+                "texels of pictures that are not magnified"),
     OPTION(struct options, samples, 4, 1, 8, "",
            "samples along a texel's side when pictures are baked"),
     OPTION(struct options, depth, 0, 0, 1, "",
@@ -30,7 +32,7 @@ static const float whole_area_px = 1000;
 
 struct state {
     struct impostor *impostor;
-    GLuint wholes, halves; /* halves: 0 where nothing is blended */
+    GLuint quads, near_program; /* of whole planes; of halves (blended) or hulls (opaque) */
     size_t planes;
 };
 
@@ -53,6 +55,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .resolution_px = resolution_of(options, workspace->lod),
         .samples = options->samples,
         .alpha = (enum atlas_alpha)options->alpha,
+        .nearest = options->filter == 1,
         .depth = options->depth,
     };
     state->planes = (size_t)options->planes;
@@ -60,22 +63,26 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
                                           (halves ? 2 : 1) * state->planes, &state->impostor);
     if (status == STATUS_OK)
         status = impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
-                                  "VIEWS 1\nHALVES 0\n", &state->wholes);
-    if (status == STATUS_OK && halves)
+                                  "VIEWS 1\nHALVES 0\nCORNERS 4\n", &state->quads);
+    if (status == STATUS_OK)
         status = impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
-                                  "VIEWS 1\nHALVES 1\n", &state->halves);
+                                  halves ? "VIEWS 1\nHALVES 1\nCORNERS 4\n"
+                                         : "VIEWS 1\nHALVES 0\nCORNERS 8\n",
+                                  &state->near_program);
     return status;
 }
 
 static void draw_trees(struct workspace *workspace, const struct state *state,
-                       const struct view *view, GLuint program, size_t first, size_t count)
+                       const struct view *view, bool near, size_t first, size_t count)
 {
+    bool blend = state->impostor->alpha == ATLAS_BLEND;
+    GLuint program = near ? state->near_program : state->quads;
     if (count == 0)
         return;
     impostor_use(workspace, state->impostor, program, view, first);
     workspace->gl->Uniform1i(gl_uniform(workspace->gl, program, "planes"), (GLint)state->planes);
-    impostor_draw(workspace, state->impostor, 4,
-                  count * state->planes * (program == state->halves ? 2 : 1));
+    impostor_draw(workspace, state->impostor, near && !blend ? ATLAS_HULL : 4,
+                  count * state->planes * (near && blend ? 2 : 1));
 }
 
 static enum status draw(struct workspace *workspace, void *own, const struct view *view,
@@ -86,11 +93,12 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
     enum status status = impostor_begin(workspace, state->impostor, view, target, &list);
     if (status != STATUS_OK)
         return status;
-    size_t near =
-        state->halves ? impostor_near_count(state->impostor, view, &list, whole_area_px) : 0;
+    bool blend = state->impostor->alpha == ATLAS_BLEND;
+    size_t near = impostor_near_count(state->impostor, view, &list,
+                                      blend ? whole_area_px : IMPOSTOR_HULL_PX, state->planes);
     size_t far = list.count - near;
-    draw_trees(workspace, state, view, state->wholes, 0, far);
-    draw_trees(workspace, state, view, state->halves, far, near);
+    draw_trees(workspace, state, view, !blend, 0, blend ? far : near);
+    draw_trees(workspace, state, view, blend, blend ? far : near, blend ? near : far);
     return impostor_end(workspace, state->impostor, target, "cross-quads");
 }
 

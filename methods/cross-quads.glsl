@@ -27,7 +27,7 @@ int whole_plane(vec3 v, int order)
 void main()
 {
     int quads = HALVES == 1 ? 2 * planes : planes;
-    int fan = gl_VertexID / 4, corner = gl_VertexID % 4;
+    int fan = gl_VertexID / CORNERS, corner = gl_VertexID % CORNERS;
     int number = int(order[first_tree + fan / quads]);
     tree t = trees[number];
     plant p = plants[int(t.turn.z)];
@@ -40,6 +40,7 @@ void main()
     int index = int(p.shape.w) + (front ? plane : planes + plane);
     picture pic = pictures[index];
     float level = level_of(t, p), margin = margin_of(p, level);
+#if CORNERS == 4
     vec2 low = pic.bounds.xy - margin, high = pic.bounds.zw + margin;
     if (HALVES == 1) {
         bool positive = (j < planes) == front; // this half lies where the picture's s is positive
@@ -48,6 +49,10 @@ void main()
         low.x = min(low.x, high.x);
     }
     vec2 st = corner_of(low, high, corner);
+#else
+    vec2 st = pic.hull[corner];
+    st += margin * sign(st - 0.5 * (pic.bounds.xy + pic.bounds.zw));
+#endif
     vec3 own = st.x * pic.right_s.xyz + st.y * pic.up_t.xyz;
     set_picture(0, t, p, index, st, 1.0);
     set_corner(t, p, own, 0.0, level, uint(number * quads + fan % quads));

@@ -142,9 +142,9 @@ is 'a full disk behind stdout is an error' $rc -eq 74
 try run "${good[@]}" --lod high,low --rounds 3 --dry-run
 is 'a dry run prints the cells and touches nothing' "$rc" -eq 0 -a "$(lines "$work/out")" -eq 2 -a ! -e results/command-line
 cell=$(head -1 "$work/out")
-try run --scene tiny --method null,polygons --method billboards:views=8,16,alpha=test --trees 1 --dry-run
+try run --scene tiny --method null,polygons --method billboards:views=8,16,alpha=blend --trees 1 --dry-run
 is 'names of methods stand in a list, options sweep' "$(cut -d/ -f2 "$work/out" | LC_ALL=C sort | tr '\n' ' ')" = \
-  "billboards:alpha=test billboards:views=8,alpha=test null polygons "
+  "billboards:alpha=blend billboards:views=8,alpha=blend null polygons "
 try run --cell "$cell" --dry-run
 is 'a name can be pasted back' "$(cat "$work/out")" = "$cell"
 try run "$cell" --dry-run

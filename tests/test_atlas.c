@@ -223,7 +223,7 @@ static void test_mips__the_alpha_test_passes_as_much_as_is_covered(void **state)
     static const double densities[] = {0.4, 0.6, 0.8, 1};
     for (int d = 0; d < 4; d++) {
         random_texels(texels, W * H, densities[d]);
-        float scale = atlas_test_scale(texels, W, H);
+        float scale = atlas_test_scale(texels, W, H, false);
         double wanted = 0;
         size_t passed = 0, points = 0;
         for (int i = 0; i < W * H; i++)
@@ -242,9 +242,14 @@ static void test_mips__the_alpha_test_passes_as_much_as_is_covered(void **state)
         double share = (double)passed / (double)points;
         if (fabs(share - wanted) > 0.06 * wanted + 0.005)
             fail_msg("density %g: %g passes, %g is covered", densities[d], share, wanted);
+        scale = atlas_test_scale(texels, W, H, true);
+        for (int i = passed = 0; i < W * H; i++)
+            passed += scale * texels[TEXEL_FLOATS * i + 3] >= 0.5f;
+        if (fabs((double)passed / (W * H) - wanted) > 0.01)
+            fail_msg("density %g: %zu nearest texels pass", densities[d], passed);
     }
     memset(texels, 0, sizeof texels);
-    assert_true(atlas_test_scale(texels, W, H) == 1);
+    assert_true(atlas_test_scale(texels, W, H, false) == 1);
 }
 
 static void test_outline__the_polygon_holds_the_picture_tightly(void **state)

@@ -39,7 +39,8 @@ static void test_billboards__a_tree_has_its_outline_from_every_side(void **state
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, (float)side * 1.5707963f, 0, 300, 9);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        struct frame *drawn = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+        struct frame *drawn =
+            tree_draw(f->arena, f->method, "alpha=blend", scene, lit, &view, NULL);
         double covered = tree_mean(truth, 3), off = tree_difference(drawn, truth, false);
         if (off > 0.2 * covered)
             fail_msg("side %d: coverage is off by %g of %g", side, off, covered);
@@ -57,7 +58,8 @@ static void test_billboards__a_turned_moved_and_scaled_tree_stands_where_it_shou
     scene->instances[1] = (struct instance){{2, -0.5f, -2}, 3.9269908f, 0.6f, 0};
     struct view view = tree_view(scene, 0.3926991f, 0, 300, 9);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-    struct frame *drawn = tree_draw(f->arena, f->method, "views=64", scene, lit, &view, NULL);
+    struct frame *drawn =
+        tree_draw(f->arena, f->method, "views=64,alpha=blend", scene, lit, &view, NULL);
     assert_true(tree_difference(drawn, truth, false) < 0.25 * tree_mean(truth, 3));
     assert_true(tree_mean(drawn, 3) > 0.97 * tree_mean(truth, 3));
 }
@@ -104,7 +106,8 @@ static void test_billboards__light_follows_the_sun_as_the_reference_does(void **
         struct view view = tree_view(scene, 0, 0, 300, 9);
         unsigned wanted = effects[k % 4];
         struct frame *truth = tree_reference(f->arena, scene, wanted, &view);
-        struct frame *drawn = tree_draw(f->arena, f->method, "", scene, wanted, &view, NULL);
+        struct frame *drawn =
+            tree_draw(f->arena, f->method, "alpha=blend", scene, wanted, &view, NULL);
         /* Mean radiance of what is covered. Where light is scarce (turned away from the sun, one
          * side, no ambient) the expansion's own error of up to 1/16 shows, so there it is held
          * against the albedo. */
@@ -128,7 +131,7 @@ static void test_billboards__more_views_err_less(void **state)
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, 0.5f + 1.1f * (float)k, 0, 300, 9);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        static const char *const options[2] = {"views=4", "views=32"};
+        static const char *const options[2] = {"views=4,alpha=blend", "views=32,alpha=blend"};
         for (int i = 0; i < 2; i++)
             error[i] += tree_rmse(
                 truth, tree_draw(f->arena, f->method, options[i], scene, lit, &view, NULL));
@@ -154,10 +157,11 @@ static void test_billboards__views_from_above_are_right_from_above(void **state)
     for (int k = 0; k < 4; k++) {
         struct view view = grid_view(scene, VIEWS_HEMISPHERE, 11, places[k][0], places[k][1]);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        double circle =
-            tree_rmse(truth, tree_draw(f->arena, f->method, "views=64", scene, lit, &view, NULL));
-        static const char *const options[] = {"layout=hemisphere,views=121",
-                                              "layout=hemisphere,views=121,pick=blended"};
+        double circle = tree_rmse(
+            truth, tree_draw(f->arena, f->method, "views=64,alpha=blend", scene, lit, &view, NULL));
+        static const char *const options[] = {
+            "alpha=blend,layout=hemisphere,views=121",
+            "alpha=blend,layout=hemisphere,views=121,pick=blended"};
         for (int i = 0; i < 2; i++) {
             struct frame *drawn =
                 tree_draw(f->arena, f->method, options[i], scene, lit, &view, NULL);
@@ -176,10 +180,11 @@ static void test_billboards__views_from_below_need_the_whole_octahedron(void **s
     struct view view = grid_view(scene, VIEWS_OCTAHEDRON, 16, 14, 11);
     assert_true(view.eye_m[1] < -100);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-    double half = tree_rmse(truth, tree_draw(f->arena, f->method, "layout=hemisphere,views=121",
-                                             scene, lit, &view, NULL));
-    static const char *const options[] = {"layout=octahedron,views=256",
-                                          "layout=octahedron,views=256,pick=blended"};
+    double half =
+        tree_rmse(truth, tree_draw(f->arena, f->method, "alpha=blend,layout=hemisphere,views=121",
+                                   scene, lit, &view, NULL));
+    static const char *const options[] = {"alpha=blend,layout=octahedron,views=256",
+                                          "alpha=blend,layout=octahedron,views=256,pick=blended"};
     for (int i = 0; i < 2; i++) {
         double whole =
             tree_rmse(truth, tree_draw(f->arena, f->method, options[i], scene, lit, &view, NULL));
@@ -193,7 +198,7 @@ static void test_billboards__views_from_below_need_the_whole_octahedron(void **s
 static void test_billboards__nearer_trees_hide_farther_ones(void **state)
 {
     struct fixture *f = *state;
-    static const char *const options[] = {"", "alpha=test", "alpha=coverage"};
+    static const char *const options[] = {"alpha=blend", "alpha=test", "alpha=coverage"};
     for (int i = 0; i < 3; i++) {
         struct frame *drawn[2];
         for (int k = 0; k < 2; k++) {
@@ -228,8 +233,8 @@ static void test_billboards__ten_thousand_trees_take_a_few_draw_calls(void **sta
 static void test_billboards__an_eye_in_the_crown_is_drawn(void **state)
 {
     struct fixture *f = *state;
-    static const char *const options[] = {"", "layout=octahedron,pick=blended", "depth=on",
-                                          "alpha=coverage"};
+    static const char *const options[] = {"", "alpha=blend,layout=octahedron,pick=blended",
+                                          "depth=on", "alpha=coverage"};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 3; k++) {
             struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
@@ -251,7 +256,7 @@ static void test_billboards__only_species_with_a_tree_are_built(void **state)
     scene->species_count = 2;
     scene->instances[0].species = 1;
     struct view view = tree_view(scene, 0, 0, 300, 9);
-    struct frame *drawn = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+    struct frame *drawn = tree_draw(f->arena, f->method, "alpha=blend", scene, lit, &view, NULL);
     assert_true(tree_mean(drawn, 3) > 0.05);
     assert_false(plant_cost(idle).built);
 }
@@ -273,8 +278,8 @@ static void test_billboards__terrain_in_front_hides_and_behind_does_not(void **s
         normals[i][0] = normals[i][2] = 0, normals[i][1] = 1;
     scene->terrain = (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}};
     static const size_t columns[] = {8, 7};
-    static const char *const options[] = {"layout=hemisphere,views=121",
-                                          "layout=hemisphere,views=121,depth=on"};
+    static const char *const options[] = {"alpha=blend,layout=hemisphere,views=121",
+                                          "alpha=blend,layout=hemisphere,views=121,depth=on"};
     for (int i = 0; i < 4; i++) {
         struct view view = grid_view(scene, VIEWS_HEMISPHERE, 11, columns[i % 2], 4);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
@@ -287,7 +292,7 @@ static void test_billboards__terrain_in_front_hides_and_behind_does_not(void **s
     for (int i = 0; i < 4; i++)
         heights[i] = 12; /* a plateau between the eye below it and the tree */
     struct view view = tree_view(scene, 0.6f, 1.2f, 300, 9);
-    struct frame *drawn = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+    struct frame *drawn = tree_draw(f->arena, f->method, "alpha=blend", scene, lit, &view, NULL);
     assert_true(tree_mean(drawn, 3) == 0);
 }
 

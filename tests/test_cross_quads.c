@@ -36,7 +36,8 @@ static void test_cross_quads__front_and_back_have_the_plants_outline(void **stat
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, (float)side * 1.5707963f, 0, 300, 9);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        struct frame *drawn = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+        struct frame *drawn =
+            tree_draw(f->arena, f->method, "alpha=blend", scene, lit, &view, NULL);
         double covered = tree_mean(truth, 3), off = tree_difference(drawn, truth, false);
         double mirrored = tree_difference(drawn, truth, true);
         if (off > 0.25 * covered || mirrored < 2.5 * off)
@@ -53,7 +54,8 @@ static void test_cross_quads__light_follows_the_sun_as_the_reference_does(void *
         struct view view = tree_view(scene, k < 4 ? 0 : 3.1415927f, 0, 300, 9);
         unsigned effects = k % 2 ? lit : EFFECT_AMBIENT | EFFECT_FOG;
         struct frame *truth = tree_reference(f->arena, scene, effects, &view);
-        struct frame *drawn = tree_draw(f->arena, f->method, "", scene, effects, &view, NULL);
+        struct frame *drawn =
+            tree_draw(f->arena, f->method, "alpha=blend", scene, effects, &view, NULL);
         double cover = tree_mean(drawn, 3) / tree_mean(truth, 3);
         for (int channel = 0; channel < 3; channel++) {
             double ratio = tree_mean(drawn, channel) / tree_mean(truth, channel) / cover;
@@ -101,9 +103,10 @@ static void test_cross_quads__half_planes_are_blended_from_back_to_front(void **
 {
     struct fixture *f = *state;
     struct plant *plant = opaque_plant(f->arena);
-    static const char *const options[][2] = {{"planes=2", "planes=2,alpha=test"},
-                                             {"planes=3", "planes=3,alpha=test"},
-                                             {"planes=8", "planes=8,alpha=test"}};
+    static const char *const options[][2] = {
+        {"planes=2,alpha=blend,filter=bilinear", "planes=2,alpha=test,filter=bilinear"},
+        {"planes=3,alpha=blend,filter=bilinear", "planes=3,alpha=test,filter=bilinear"},
+        {"planes=8,alpha=blend,filter=bilinear", "planes=8,alpha=test,filter=bilinear"}};
     for (int k = 0; k < 24; k++) {
         struct scene *scene = tree_scene(f->arena, plant, 1, 1);
         scene->instances[0].rotation_rad = 0.7f * (float)k;
@@ -134,7 +137,8 @@ static void test_cross_quads__every_way_keeps_the_same_coverage(void **state)
     for (int k = 0; k < 2; k++) {
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, 0.7853982f, 0.1f, 300, spans[k]);
-        double blend = tree_mean(tree_draw(f->arena, f->method, "", scene, lit, &view, NULL), 3);
+        double blend =
+            tree_mean(tree_draw(f->arena, f->method, "alpha=blend", scene, lit, &view, NULL), 3);
         double coverage =
             tree_mean(tree_draw(f->arena, f->method, "alpha=coverage", scene, lit, &view, NULL), 3);
         double test =
@@ -163,7 +167,7 @@ static void test_cross_quads__ten_thousand_trees_take_a_few_draw_calls(void **st
 static void test_cross_quads__an_eye_in_the_crown_is_drawn(void **state)
 {
     struct fixture *f = *state;
-    static const char *const options[] = {"", "planes=8,depth=on", "alpha=coverage"};
+    static const char *const options[] = {"", "alpha=blend,planes=8,depth=on", "alpha=coverage"};
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);

@@ -193,11 +193,11 @@ static void straighten(struct level *level, const struct level *coarser)
         }
 }
 
-static void quantise(struct level *level, enum atlas_alpha alpha)
+static void quantise(struct level *level, enum atlas_alpha alpha, bool nearest)
 {
     size_t count = (size_t)level->width_px * (size_t)level->height_px;
     float scale = alpha == ATLAS_TEST
-                      ? atlas_test_scale(level->texels, level->width_px, level->height_px)
+                      ? atlas_test_scale(level->texels, level->width_px, level->height_px, nearest)
                       : 1;
     for (size_t at = 0; at < count; at++) {
         const float *texel = level->texels + TEXEL_FLOATS * at;
@@ -212,7 +212,7 @@ static void quantise(struct level *level, enum atlas_alpha alpha)
 }
 
 /* All levels of one picture, from its finest. */
-static void build_levels(struct level *levels, enum atlas_alpha alpha)
+static void build_levels(struct level *levels, const struct atlas_request *request)
 {
     int last = 0;
     for (; levels[last].width_px > 1 || levels[last].height_px > 1; last++)
@@ -223,7 +223,7 @@ static void build_levels(struct level *levels, enum atlas_alpha alpha)
         straighten(&levels[i], coarser);
         if (coarser)
             atlas_fill(levels[i].texels, levels[i].width_px, levels[i].height_px, coarser->texels);
-        quantise(&levels[i], alpha);
+        quantise(&levels[i], request->alpha, request->nearest && i > 0);
     }
 }
 
@@ -275,14 +275,16 @@ static void upload(struct workspace *workspace, struct arena *scratch,
     while (levels[last].width_px > 1 || levels[last].height_px > 1)
         last++;
     /* Light varies less than coverage does: its nearest texel will do, at a third of the cost. */
-    atlas->albedo = create_array(gl, atlas, GL_RGBA8, GL_LINEAR_MIPMAP_NEAREST);
+    atlas->albedo =
+        create_array(gl, atlas, GL_RGBA8,
+                     request->nearest ? GL_NEAREST_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_NEAREST);
     atlas->light = create_array(gl, atlas, GL_RGBA8, GL_NEAREST_MIPMAP_NEAREST);
     atlas->depth = request->depth ? create_array(gl, atlas, GL_R16, GL_LINEAR_MIPMAP_NEAREST) : 0;
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (size_t i = 0; i < atlas->species_count; i++)
         for (size_t view = 0; plants[i] && view < atlas->views_count; view++, layer++) {
             expand(plants[i], view, atlas, levels[0].texels);
-            build_levels(levels, request->alpha);
+            build_levels(levels, request);
             upload_picture(gl, atlas, levels, layer);
             for (size_t k = 0; k < 3; k++)
                 color[k] += levels[last].straight[k] / (float)atlas->layers;

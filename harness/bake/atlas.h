@@ -31,7 +31,8 @@ struct atlas_request {
                         */
     int samples;       /* samples along a texel's side, 1..8 */
     enum atlas_alpha alpha;
-    bool depth; /* make the depth array too */
+    bool nearest; /* where texels are not larger than pixels take the nearest, not a mean of four */
+    bool depth;   /* make the depth array too */
 };
 
 /* One picture, as impostor.glsl reads it (std430). */

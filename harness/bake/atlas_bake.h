@@ -32,9 +32,9 @@ enum { TEXEL_FLOATS = 9 };
 void atlas_halve(const float *from, int width_px, int height_px, float *to);
 /* Light channels and depth of empty texels from the coarser level (which is filled already). */
 void atlas_fill(float *texels, int width_px, int height_px, const float *coarser);
-/* Factor on coverage, in [1/8, 8], such that the share of the level where the bilinear, clamped
- * coverage reaches 1/2 is the level's mean coverage. */
-float atlas_test_scale(const float *texels, int width_px, int height_px);
+/* Factor on coverage, in [1/8, 8], such that the share of the level where the clamped coverage,
+ * bilinear or of the nearest texel, reaches 1/2 is the level's mean coverage. */
+float atlas_test_scale(const float *texels, int width_px, int height_px, bool nearest);
 
 /* The outline of a picture: smallest rectangle and a convex polygon of at most 8 corners that hold
  * all covered texels, half a texel beyond their edge, and the plane fitted to their depth. view's

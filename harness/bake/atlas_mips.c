@@ -2,6 +2,7 @@
 #include "bake/atlas_bake.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 void atlas_halve(const float *from, int width_px, int height_px, float *to)
@@ -62,6 +63,15 @@ static float coverage_at(const float *texels, int width_px, int height_px, float
     return sum;
 }
 
+/* Share of the texels that pass the test. */
+static double passing_share(const float *texels, int width_px, int height_px, float scale)
+{
+    size_t count = (size_t)width_px * (size_t)height_px, passed = 0;
+    for (size_t i = 0; i < count; i++)
+        passed += scale * texels[TEXEL_FLOATS * i + 3] >= 0.5f;
+    return (double)passed / (double)count;
+}
+
 /* Share of the level that passes the test: at four points a texel, at one in large levels. */
 static double tested_share(const float *texels, int width_px, int height_px, float scale)
 {
@@ -78,7 +88,7 @@ static double tested_share(const float *texels, int width_px, int height_px, flo
     return (double)passed / ((double)points * width_px * height_px);
 }
 
-float atlas_test_scale(const float *texels, int width_px, int height_px)
+float atlas_test_scale(const float *texels, int width_px, int height_px, bool nearest)
 {
     enum { STEPS = 12 };
     size_t count = (size_t)width_px * (size_t)height_px;
@@ -90,7 +100,9 @@ float atlas_test_scale(const float *texels, int width_px, int height_px)
     double low = 0.125, high = 8; /* the share grows with the scale */
     for (int step = 0; step < STEPS; step++) {
         double middle = sqrt(low * high);
-        if (tested_share(texels, width_px, height_px, (float)middle) < wanted)
+        double share = nearest ? passing_share(texels, width_px, height_px, (float)middle)
+                               : tested_share(texels, width_px, height_px, (float)middle);
+        if (share < wanted)
             low = middle;
         else
             high = middle;

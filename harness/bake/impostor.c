@@ -103,7 +103,7 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     impostor->cull = cull_create(workspace->arena, scene, bounds);
     impostor->area_m2 = mean_area(scene, impostor->atlas);
     impostor->fans_quad = count * quads_each;
-    impostor->fans_hull = count < HULLS_MOST ? count : HULLS_MOST;
+    impostor->fans_hull = impostor->fans_quad < HULLS_MOST ? impostor->fans_quad : HULLS_MOST;
     impostor->instances_buffer = upload_trees(gl, scene);
     impostor->order_buffer =
         gl_buffer(gl, (GLsizeiptr)((count + 1) * sizeof(uint32_t)), NULL, GL_DYNAMIC_STORAGE_BIT);
@@ -225,6 +225,7 @@ enum status impostor_begin(struct workspace *workspace, struct impostor *imposto
     }
     gl->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     backdrop_draw(workspace, impostor->backdrop, view);
+    gl->Flush(); /* a software GL fills the backdrop while the trees are culled and sorted */
     relight(impostor, gl, view->sun_direction);
     *list = cull_view(impostor->cull, view,
                       impostor->alpha == ATLAS_BLEND ? CULL_BACK_TO_FRONT : CULL_FRONT_TO_BACK);
@@ -275,7 +276,7 @@ void impostor_draw(struct workspace *workspace, const struct impostor *impostor,
 }
 
 size_t impostor_near_count(const struct impostor *impostor, const struct view *view,
-                           const struct cull_list *list, float area_px)
+                           const struct cull_list *list, float area_px, size_t hulls_each)
 {
     float focal = cull_focal_px(view), depth_m = focal * sqrtf(impostor->area_m2 / area_px);
     bool far_first = impostor->alpha == ATLAS_BLEND;
@@ -288,7 +289,8 @@ size_t impostor_near_count(const struct impostor *impostor, const struct view *v
         else
             high = middle;
     }
-    return low < impostor->fans_hull ? low : impostor->fans_hull;
+    size_t most = impostor->fans_hull / hulls_each;
+    return low < most ? low : most;
 }
 
 enum status impostor_end(struct workspace *workspace, const struct impostor *impostor,

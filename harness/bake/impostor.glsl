@@ -147,11 +147,12 @@ void main()
         vec4 texel = textureLod(albedo_map, at, shared_terms.y);
         vec4 light = textureLod(light_map, at, shared_terms.y);
         float diffuse = light_rest[k] + dot(light, light_factors[k]);
-        vec3 lit = texel.rgb * max(sun_radiance * diffuse + ambient, 0.0);
-#ifdef STRAIGHT
-        lit *= texel.a;
-#endif
+        vec3 lit = texel.rgb * (sun_radiance * max(diffuse, 0.0) + ambient);
         float weight = VIEWS == 1 ? 1.0 : layer_weight[k].y;
+#ifdef STRAIGHT
+        if (VIEWS > 1)
+            lit *= texel.a;
+#endif
         radiance += weight * lit;
         coverage += weight * texel.a;
 #ifdef DEPTH
@@ -164,7 +165,7 @@ void main()
 #endif
     radiance *= shared_terms.x;
 #ifdef STRAIGHT
-    color = vec4(radiance / max(coverage, 1e-6), 1.0);
+    color = vec4(VIEWS > 1 ? radiance / max(coverage, 1e-6) : radiance, 1.0);
 #else
     color = vec4(radiance, coverage);
 #endif

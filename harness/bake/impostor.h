@@ -38,8 +38,9 @@ enum status impostor_program(struct workspace *workspace, const struct impostor 
                              const char *name, const char *source, const char *defines,
                              GLuint *program);
 
-/* Binds target (or its multisampled twin), draws the backdrop, culls, sorts (back to front for
- * blending, else front to back) and uploads the order. Returns the list of trees to draw. */
+/* Binds target (or its multisampled twin), draws the backdrop, culls, sorts (back to
+ * front for blending, else front to back) and uploads the order. Returns the list of trees to draw.
+ */
 enum status impostor_begin(struct workspace *workspace, struct impostor *impostor,
                            const struct view *view, struct target *target, struct cull_list *list);
 
@@ -51,11 +52,17 @@ void impostor_use(struct workspace *workspace, const struct impostor *impostor, 
 void impostor_draw(struct workspace *workspace, const struct impostor *impostor, int corners,
                    size_t fans);
 
-/* How many trees at the near end of the list cover more than about area_px pixels each. */
-size_t impostor_near_count(const struct impostor *impostor, const struct view *view,
-                           const struct cull_list *list, float area_px);
+/* From this many pixels on the polygon of ATLAS_HULL corners costs less than the transparent
+ * corners of a quad. */
+enum { IMPOSTOR_HULL_PX = 1500 };
 
-/* Resolves and restores the state that backdrop_draw leaves. */
+/* How many trees at the near end of the list cover more than about area_px pixels each; no more
+ * than there are hulls for, hulls_each a tree. */
+size_t impostor_near_count(const struct impostor *impostor, const struct view *view,
+                           const struct cull_list *list, float area_px, size_t hulls_each);
+
+/* Resolves and restores the state that backdrop_draw
+ * leaves. */
 enum status impostor_end(struct workspace *workspace, const struct impostor *impostor,
                          struct target *target, const char *where);
 
