@@ -30,8 +30,8 @@ struct sift_work {
 void sift_screen_set(struct sift_screen *screen, const struct view *view);
 void sift_project(const struct sift_screen *screen, const float world_m[3], float projected[3]);
 
-/* Whether the tree's box meets the band's rows and, where `look` is set, any sample that nothing
- * nearer covers yet. */
+/* Whether the tree may meet the band's rows; where `look` is set, any sample that nothing nearer
+ * covers yet. */
 bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, bool look);
 void sift_tree_set(struct sift_work *work, const struct instance *instance);
 

@@ -72,10 +72,28 @@ static bool box_is_hidden(const struct sift_screen *screen, const struct box *bo
     return true;
 }
 
+/* Whether the sphere about a tree may reach into the band. */
+static bool sphere_seen(const struct sift_work *work, const struct sift_tree *tree)
+{
+    const struct instance *instance = tree->instance;
+    float half_m = 0.5f * (tree->high_m - tree->low_m), p[3];
+    float middle[3] = {instance->position_m[0],
+                       instance->position_m[1] + instance->scale * (tree->low_m + half_m),
+                       instance->position_m[2]};
+    float reach_m = instance->scale * (half_m + tree->radius_m);
+    sift_project(work->screen, middle, p);
+    if (!(p[2] > work->screen->near_m + 8 * reach_m))
+        return true;
+    float reach_px = reach_m * work->screen->focal_px, row = p[1];
+    return row + reach_px >= work->low_row * p[2] && row - reach_px <= work->high_row * p[2];
+}
+
 bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, bool look)
 {
     const struct sift_screen *screen = work->screen;
     const struct instance *instance = tree->instance;
+    if (!look)
+        return sphere_seen(work, tree);
     float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, near_m = INFINITY;
     for (int corner = 0; corner < 8; corner++) {
         float radius = instance->scale * tree->radius_m, p[3], world[3];
@@ -101,7 +119,7 @@ bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, 
     box.y1 = box.y1 < (int)work->high_row ? box.y1 : (int)work->high_row - 1;
     if (!(box.x0 <= box.x1 && box.y0 <= box.y1))
         return false;
-    return !look || !box_is_hidden(screen, &box, near_m);
+    return !box_is_hidden(screen, &box, near_m);
 }
 
 void sift_tree_set(struct sift_work *work, const struct instance *instance)
