@@ -3,6 +3,7 @@
  * centres. */
 #include "bake/backdrop.h"
 #include "bake/cull.h"
+#include "bake/horizon.h"
 
 #include "backdrop.glsl.h"
 
@@ -24,6 +25,7 @@ struct backdrop {
     GLuint smooth_program; /* for an eye above a terrain that is bent little; else 0 */
     size_t chunks_count;
     struct chunk *chunks;
+    struct horizon *horizon;
 };
 
 /* Copies the triangles of one chunk's quads behind each other. The mesh has two triangles a quad,
@@ -158,6 +160,8 @@ enum status backdrop_prepare(struct workspace *workspace, const struct scene *sc
         gl_program(gl, "sky", backdrop_glsl, "SKY 1", &made->sky_program, workspace->error);
     if (status == STATUS_OK)
         status = prepare_terrain(workspace, scene, made);
+    if (status == STATUS_OK)
+        status = horizon_prepare(workspace, scene, &made->horizon);
     return status == STATUS_OK ? gl_check(gl, "backdrop", workspace->error) : status;
 }
 
@@ -263,6 +267,7 @@ void backdrop_draw(struct workspace *workspace, struct backdrop *backdrop, const
     gl->Clear(GL_DEPTH_BUFFER_BIT); /* terrain and sky reach every pixel's colour */
     draw_terrain(workspace, backdrop, view);
     draw_sky(workspace, backdrop, view);
+    horizon_draw(workspace, backdrop->horizon, view);
 }
 
 void shade_uniforms(struct workspace *workspace, GLuint program, const struct scene *scene,
