@@ -157,9 +157,9 @@ static enum status prepare_kind(struct workspace *workspace, struct state *state
     if (prune)
         keep_probes(workspace->arena, kind, prune);
     if (state->sift) {
-        kind->sift = sift_plant_create(workspace->arena, detail, prune, species);
+        kind->sift = sift_plant_create(workspace->arena, detail, prune, &kind->levels, species);
     } else {
-        plant_gl_detail(workspace, detail, state->placed_buffer, &kind->gpu);
+        plant_gl_detail(workspace, detail, &kind->levels, state->placed_buffer, &kind->gpu);
         if (prune)
             plant_gl_pruned(workspace, prune, state->placed_buffer, &kind->gpu);
     }
@@ -330,7 +330,8 @@ static struct plant_gl_placed place_tree(const struct state *state, const struct
         levels_run_of(&kind->levels, step, per_m, state->options->smooth, taper_of(state));
     placed.place[3] = (float)levels_begin(&kind->levels, place % LEVELS_RUNS);
     placed.turn[2] = run.kept;
-    placed.turn[3] = kind->levels.step_bark[step] >= 0 ? -run.growth : run.growth;
+    placed.turn[3] = run.growth;
+    placed.stout = ((float)kind->levels.step_stout[step] - 0.5f) / 65535;
     return placed;
 }
 
@@ -382,9 +383,7 @@ static struct detail_range group_range(const struct kind *kind, const struct pla
         return batch ? batch->levels[group] : none;
     uint32_t step = (group - count) / LEVELS_RUNS, run = (group - count) % LEVELS_RUNS;
     if (batch)
-        return batch->kind == MATERIAL_BARK && levels->step_bark[step] >= 0
-                   ? batch->levels[levels->step_bark[step]]
-                   : none;
+        return batch->kind == MATERIAL_BARK ? batch->stout[step] : none;
     return (struct detail_range){3 * levels_begin(levels, run), 3 * levels->step_elements[step]};
 }
 
@@ -490,12 +489,14 @@ static size_t add_runs(const struct state *state, const struct kind *kind, uint3
     const struct levels *levels = &kind->levels;
     const struct sift_plant *plant = kind->sift;
     struct levels_choice choice = choose(state, levels, per_m);
-    int bark = choice.step < 0 ? (int)choice.level : levels->step_bark[choice.step];
     size_t count = 0;
     for (size_t b = 0; b < plant->batches_count; b++) {
-        const struct sift_set *set = plant->sets[b][plant->bark[b] && bark >= 0 ? bark : 0];
-        if (set->count > 0 && (plant->bark[b] ? bark >= 0 : choice.step < 0))
-            runs[count++] = (struct sift_run){.set = set, .kept = (float)set->count, .growth = 1};
+        bool pruned = choice.step >= 0;
+        uint32_t level = pruned ? levels->step_bark[choice.step] : choice.level;
+        const struct sift_set *set = plant->sets[b][plant->bark[b] ? level : 0];
+        size_t kept = pruned ? plant->stout[b][choice.step] : set->count;
+        if (kept > 0)
+            runs[count++] = (struct sift_run){.set = set, .kept = (float)kept, .growth = 1};
     }
     if (choice.step >= 0) {
         struct levels_run kept =
@@ -505,7 +506,7 @@ static size_t add_runs(const struct state *state, const struct kind *kind, uint3
                                           .kept = kept.kept,
                                           .growth = kept.growth,
                                           .taper = taper_of(state),
-                                          .leaves_only = bark >= 0};
+                                          .stout = levels->step_stout[choice.step]};
     }
     return count;
 }

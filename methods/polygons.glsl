@@ -6,14 +6,14 @@
 #pragma stage vertex
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, 0 bark; SIFTED: (2 species + leaf) / 32767
-layout(location = 2) in vec4 albedo;  // w: SIFTED, 1 / growth
+layout(location = 2) in vec4 albedo;  // w: SIFTED, 1 / growth; PRUNED, of bark, its width
 #ifdef TEXTURED
 layout(location = 3) in vec2 uv;
 sample out vec2 texture_uv;
 #endif
 #ifndef SIFTED
 layout(location = 5) in vec4 place;  // foot, m; first element of the run
-layout(location = 6) in vec4 turn;   // scale cos, scale sin; elements of the run, their growth (-: without bark)
+layout(location = 6) in vec4 turn;   // scale cos, scale sin; elements of the run, their growth
 #endif
 #ifdef LIT_AT_VERTICES
 centroid out vec3 radiance;
@@ -24,6 +24,7 @@ centroid out vec3 surface_albedo;
 #endif
 #ifdef PRUNED
 layout(location = 4) in vec3 center;
+layout(location = 7) in float stout;
 uniform float elements;  // of the plant
 uniform float taper;     // share of the run that is shrinking
 #endif
@@ -42,8 +43,8 @@ void main()
     rank += rank < 0.0 ? elements : 0.0;
     float keep = taper > 0.0 ? clamp((turn.z - rank - 0.5) / (taper * turn.z), 0.0, 1.0) : 1.0;
     bool leaf = normal.w > 0.5;
-    float grow = abs(turn.w);
-    keep = leaf || turn.w > 0.0 ? keep : 0.0;
+    float grow = turn.w;
+    keep = leaf || albedo.w < stout ? keep : 0.0;  // wide bark is drawn whole
     local = center + (position - center) * (grow * keep);
 #elif defined(SIFTED)
     int owner = int(round(normal.w * 32767.0));

@@ -12,7 +12,8 @@ struct cover {
     float right[SIDES][3], up[SIDES][3]; /* samples a metre */
     float middle[2];
     double sample_m2, plant_m2;
-    int bark_level;          /* which the stencil holds; -2: none */
+    uint32_t bark; /* what the stencil holds; stout 0: nothing yet */
+    uint16_t stout;
     uint8_t *stencil, *hits; /* SIDES x SIDE x SIDE */
 };
 
@@ -56,13 +57,14 @@ static void mark_sides(const struct cover *cover, uint8_t *hits, const float wor
     }
 }
 
-static void mark_batches(const struct cover *cover, uint8_t *hits, bool bark_alone, size_t level)
+/* stout: of bark, and then no leaves; 0: everything. */
+static void mark_batches(const struct cover *cover, uint8_t *hits, size_t level, uint16_t stout)
 {
     const struct detail *detail = cover->detail;
     for (size_t b = 0; b < detail->batches_count; b++) {
-        struct detail_range range = detail->batches[b].levels[level];
+        struct detail_range range = detail_stout(detail, b, level, stout);
         const uint32_t *corners = detail->indices + range.first_index;
-        if (bark_alone && detail->batches[b].kind != MATERIAL_BARK)
+        if (stout > 0 && detail->batches[b].kind != MATERIAL_BARK)
             continue;
         for (uint32_t i = 0; i + 2 < range.indices_count; i += 3) {
             float world[3][3];
@@ -92,7 +94,6 @@ struct cover *cover_create(struct arena *arena, const struct mesh *mesh,
     float extent_m = 1.2f * fmaxf(2 * radius, level * height + rise * 2 * radius) + 1e-6f;
     float per_m = SIDE / extent_m, middle_m = 0.5f * (mesh->minimum_m[1] + mesh->maximum_m[1]);
     cover->detail = detail;
-    cover->bark_level = -2;
     cover->sample_m2 = 1 / (double)per_m / (double)per_m;
     cover->middle[0] = SIDE / 2;
     cover->middle[1] = SIDE / 2 - per_m * level * middle_m;
@@ -104,7 +105,7 @@ struct cover *cover_create(struct arena *arena, const struct mesh *mesh,
     }
     cover->stencil = ARENA_ARRAY(arena, uint8_t, SIDES * BYTES);
     cover->hits = ARENA_ARRAY(arena, uint8_t, SIDES * BYTES);
-    mark_batches(cover, cover->hits, false, 0);
+    mark_batches(cover, cover->hits, 0, 0);
     cover->plant_m2 = count_m2(cover);
     return cover;
 }
@@ -118,18 +119,18 @@ double cover_of_run(struct cover *cover, const struct cover_run *run)
 {
     const struct prune *prune = run->prune;
     size_t length = (size_t)ceilf(run->kept);
-    if (cover->bark_level != run->bark) {
+    if (cover->bark != run->bark || cover->stout != run->stout) {
         memset(cover->stencil, 0, SIDES * BYTES);
-        if (run->bark >= 0)
-            mark_batches(cover, cover->stencil, true, (size_t)run->bark);
-        cover->bark_level = run->bark;
+        mark_batches(cover, cover->stencil, run->bark, run->stout);
+        cover->bark = run->bark;
+        cover->stout = run->stout;
     }
     memcpy(cover->hits, cover->stencil, SIDES * BYTES);
     for (size_t rank = 0; rank < length && rank < prune->count; rank++) {
         const struct prune_vertex *corners =
             prune->vertices + 3 * ((run->begin + rank) % prune->count);
         float size = run->growth, world[3][3];
-        if (run->bark >= 0 && corners[0].normal[3] == 0)
+        if (corners[0].normal[3] == 0 && corners[0].albedo[3] >= run->stout)
             continue;
         if (run->taper > 0)
             size *= fminf(fmaxf((run->kept - (float)rank - 0.5f) / (run->taper * run->kept), 0), 1);

@@ -19,13 +19,14 @@ struct cover *cover_create(struct arena *arena, const struct mesh *mesh,
 /* Square metres covered, the mean of the three sides. */
 double cover_plant(const struct cover *cover);
 
-/* `kept` elements from `begin` on (around the end) as prune.h and polygons.glsl scale them; bark:
- * the level of bark drawn instead of the run's own, or -1. */
+/* `kept` elements from `begin` on (around the end) as prune.h and polygons.glsl scale them; bark at
+ * least as wide as `stout` is drawn whole, at a level, instead of the run's own. */
 struct cover_run {
     const struct prune *prune;
     uint32_t begin;
     float kept, growth, taper;
-    int bark;
+    uint32_t bark;
+    uint16_t stout;
 };
 double cover_of_run(struct cover *cover, const struct cover_run *run);
 

@@ -1,6 +1,7 @@
 /* Packing a plant's triangles: batches by kind and texture, bark levels by edge collapse
  * (meshoptimizer). */
 #include "bake/detail.h"
+#include "bake/stout.h"
 #include "wall/simplify.h"
 
 #include <math.h>
@@ -96,6 +97,7 @@ struct packer {
     struct detail *detail;
     const struct mesh *mesh;
     uint32_t *renumbered;  /* mesh vertex -> packed vertex + 1 of the part at work */
+    uint16_t *widths;      /* of the mesh's vertices */
     float (*positions)[3]; /* of the packed vertices, for the simplifier */
 };
 
@@ -116,6 +118,7 @@ static uint32_t pack_vertex(struct packer *packer, uint32_t vertex, const struct
     detail_pack_albedo(albedo, packed->albedo);
     if (detail->uvs)
         memcpy(detail->uvs[at], mesh->uvs[vertex], sizeof *detail->uvs);
+    detail->widths[at] = packer->widths[vertex];
     packer->renumbered[vertex] = at + 1;
     return at;
 }
@@ -146,6 +149,15 @@ static enum material_kind part_kind(const struct mesh *mesh, size_t part)
     return mesh->materials[mesh->parts[part].material].kind;
 }
 
+/* A better order for the vertex cache, and bark from wide to thin. */
+static void order_indices(const struct detail *detail, enum material_kind kind, uint32_t *indices,
+                          size_t count)
+{
+    simplify_order(indices, count, detail->vertices_count);
+    if (kind == MATERIAL_BARK)
+        stout_order(indices, count, detail->widths);
+}
+
 /* All parts of one kind and texture, from the first of them on. */
 static void pack_batch(struct packer *packer, struct arena *arena, size_t first_part)
 {
@@ -167,7 +179,7 @@ static void pack_batch(struct packer *packer, struct arena *arena, size_t first_
     batch->closed = kind == MATERIAL_BARK && !texture &&
                     detail_is_closed(arena, (const float(*)[3])packer->positions,
                                      detail->vertices_count, indices, count);
-    simplify_order(indices, count, detail->vertices_count);
+    order_indices(detail, kind, indices, count);
 }
 
 static size_t level_triangles(const struct detail *detail, size_t level)
@@ -178,29 +190,13 @@ static size_t level_triangles(const struct detail *detail, size_t level)
     return indices / 3;
 }
 
-static double level_bark_area(const struct packer *packer, size_t level)
+struct detail_range detail_stout(const struct detail *detail, size_t batch, size_t level,
+                                 uint16_t least)
 {
-    const struct detail *detail = packer->detail;
-    double area = 0;
-    for (size_t b = 0; b < detail->batches_count; b++) {
-        struct detail_range range = detail->batches[b].levels[level];
-        const uint32_t *corners = detail->indices + range.first_index;
-        if (detail->batches[b].kind != MATERIAL_BARK)
-            continue;
-        for (uint32_t i = 0; i + 2 < range.indices_count; i += 3) {
-            const float *p = packer->positions[corners[i]], *q = packer->positions[corners[i + 1]];
-            const float *r = packer->positions[corners[i + 2]];
-            double n2 = 0;
-            for (int axis = 0; axis < 3; axis++) {
-                int j = (axis + 1) % 3, k = (axis + 2) % 3;
-                double n = ((double)q[j] - p[j]) * ((double)r[k] - p[k]) -
-                           ((double)q[k] - p[k]) * ((double)r[j] - p[j]);
-                n2 += n * n;
-            }
-            area += 0.5 * sqrt(n2);
-        }
-    }
-    return area;
+    struct detail_range range = detail->batches[batch].levels[level];
+    range.indices_count = (uint32_t)stout_count(detail->indices + range.first_index,
+                                                range.indices_count, detail->widths, least);
+    return range;
 }
 
 /* Adds a level of bark within an error; false when it saves too little to be worth its memory. */
@@ -220,7 +216,7 @@ static bool add_level(struct packer *packer, float error_m)
         size_t count = simplify_indices((const float(*)[3])packer->positions,
                                         detail->vertices_count, detail->indices + full.first_index,
                                         full.indices_count, error_m, indices, &reached_m);
-        simplify_order(indices, count, detail->vertices_count);
+        order_indices(detail, batch->kind, indices, count);
         batch->levels[level] =
             (struct detail_range){(uint32_t)detail->indices_count, (uint32_t)count};
         detail->indices_count += count;
@@ -234,7 +230,6 @@ static bool add_level(struct packer *packer, float error_m)
     }
     detail->errors_m[level] = worst_m;
     detail->triangles_count[level] = level_triangles(detail, level);
-    detail->bark_area_m2[level] = level_bark_area(packer, level);
     detail->levels_count++;
     return true;
 }
@@ -250,6 +245,8 @@ struct detail *detail_create(struct arena *arena, const struct mesh *mesh, bool 
                             .mesh = mesh,
                             .renumbered = ARENA_ARRAY(arena, uint32_t, mesh->vertices_count),
                             .positions = arena_alloc(arena, corners, sizeof(float[3]))};
+    packer.widths = stout_widths(arena, mesh);
+    detail->widths = ARENA_ARRAY(arena, uint16_t, corners);
     detail->vertices = ARENA_ARRAY(arena, struct detail_vertex, corners);
     detail->uvs = mesh->uvs ? arena_alloc(arena, corners, sizeof(float[2])) : NULL;
     /* a level holds at most 3/4 of the bark before it: 4 times the bark in all, and one that is
@@ -260,7 +257,6 @@ struct detail *detail_create(struct arena *arena, const struct mesh *mesh, bool 
         pack_batch(&packer, arena, p);
     detail->levels_count = 1;
     detail->triangles_count[0] = level_triangles(detail, 0);
-    detail->bark_area_m2[0] = level_bark_area(&packer, 0);
     float extent_m = fmaxf(mesh->maximum_m[1] - mesh->minimum_m[1], 2 * mesh->radius_m);
     for (int bits = 14; bits >= 4 && simplify && detail->levels_count < DETAIL_LEVELS_MAX; bits--)
         add_level(&packer, ldexpf(extent_m, -bits));

@@ -24,13 +24,14 @@ struct detail_batch {
     const struct texture *texture; /* NULL: none */
     bool flat;   /* every triangle's normals are its geometric normal: may be lit at its vertices */
     bool closed; /* a closed surface that faces outward: its back faces are never seen */
-    struct detail_range levels[DETAIL_LEVELS_MAX];
+    struct detail_range levels[DETAIL_LEVELS_MAX]; /* bark: from wide to thin */
 };
 
 struct detail {
     size_t vertices_count;
     struct detail_vertex *vertices;
-    float (*uvs)[2]; /* vertices_count; NULL when no material has a texture */
+    uint16_t *widths; /* vertices_count: of the bark they belong to, see stout.h */
+    float (*uvs)[2];  /* vertices_count; NULL when no material has a texture */
     size_t indices_count;
     uint32_t *indices;
     size_t batches_count;
@@ -38,7 +39,6 @@ struct detail {
     size_t levels_count;               /* level 0: every triangle */
     float errors_m[DETAIL_LEVELS_MAX]; /* how far the bark's surface may have moved */
     size_t triangles_count[DETAIL_LEVELS_MAX];
-    double bark_area_m2[DETAIL_LEVELS_MAX]; /* what collapsed twigs take away */
 };
 
 /* simplify: false makes level 0 alone. The arena is best a passing one: it also holds what was
@@ -50,6 +50,10 @@ struct detail *detail_create(struct arena *arena, const struct mesh *mesh, bool 
  * vertices. */
 bool detail_is_closed(struct arena *arena, const float (*positions)[3], size_t vertices_count,
                       const uint32_t *indices, size_t indices_count);
+
+/* The triangles of a batch's level that are at least so wide (stout.h). */
+struct detail_range detail_stout(const struct detail *detail, size_t batch, size_t level,
+                                 uint16_t least);
 
 /* Packing of a unit vector and of a colour in [0, 1]; values outside are clamped. */
 void detail_pack_normal(const float normal[3], int16_t packed[4]);

@@ -1,13 +1,16 @@
 /* Which representation of a plant stands at which distance. */
 #include "bake/levels.h"
 #include "bake/cover.h"
+#include "bake/stout.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Twigs are thinner than a pixel long before they may be left out: bark moves by this share of a
  * tolerance. */
-static const float BARK_SHARE = 0.125f, BARK_AREA_KEPT = 0.75f;
+static const float BARK_SHARE = 0.125f;
+/* Stems of this mean width, in tolerances, are still drawn whole: their feet are twice as wide. */
+static const float STOUT_WIDTH = 0.5f;
 
 /* Elements that are looked at to find a step's cover, and how well it is matched. */
 enum { RUN_ELEMENTS = 8192, MATCH_ROUNDS = 5 };
@@ -39,15 +42,6 @@ static void fill_steps(struct levels *levels, const struct prune *prune)
     }
 }
 
-static size_t bark_triangles(const struct detail *detail, size_t level)
-{
-    size_t indices = 0;
-    for (size_t b = 0; b < detail->batches_count; b++)
-        if (detail->batches[b].kind == MATERIAL_BARK)
-            indices += detail->batches[b].levels[level].indices_count;
-    return indices / 3;
-}
-
 static uint32_t bark_level(const struct levels *levels, float per_m)
 {
     uint32_t level = 0;
@@ -56,17 +50,13 @@ static uint32_t bark_level(const struct levels *levels, float per_m)
     return level;
 }
 
-/* The bark of each step of pruning: the coarsest level within the error, while it keeps most of its
- * area. */
-static void choose_bark(struct levels *levels, const struct detail *detail)
+/* The bark of each step of pruning: what is no dot yet is drawn whole. */
+static void choose_bark(struct levels *levels)
 {
     for (uint32_t step = 0; step < levels->steps_count; step++) {
         float per_m = sqrtf((float)levels->step_elements[step] / levels->area_m2);
-        uint32_t level = bark_level(levels, per_m);
-        size_t bark = bark_triangles(detail, level);
-        bool whole = detail->bark_area_m2[level] >= BARK_AREA_KEPT * detail->bark_area_m2[0];
-        bool use = bark > 0 && bark <= levels->step_elements[step] && whole;
-        levels->step_bark[step] = use ? (int)level : -1;
+        levels->step_bark[step] = bark_level(levels, per_m);
+        levels->step_stout[step] = stout_pack(STOUT_WIDTH / per_m);
     }
 }
 
@@ -85,7 +75,8 @@ static double step_cover(struct cover *cover, const struct levels *levels,
                                 .kept = kept,
                                 .growth = size * growth_of(levels, kept, taper),
                                 .taper = taper,
-                                .bark = levels->step_bark[step]};
+                                .bark = levels->step_bark[step],
+                                .stout = levels->step_stout[step]};
         sum += cover_of_run(cover, &run);
     }
     return sum / runs;
@@ -132,7 +123,7 @@ void levels_fill(struct levels *levels, const struct mesh *mesh, const struct de
     memcpy(levels->level_triangles, detail->triangles_count, sizeof levels->level_triangles);
     if (prune && prune->count > 0) {
         fill_steps(levels, prune);
-        choose_bark(levels, detail);
+        choose_bark(levels);
         match_cover(levels, mesh, detail, prune, taper);
     }
 }

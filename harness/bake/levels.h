@@ -19,7 +19,8 @@ struct levels {
     float area_m2;
     uint32_t elements; /* of pruning; 0: none */
     uint32_t steps_count;
-    int step_bark[LEVELS_STEPS_MAX]; /* the level of bark drawn with a step; -1: its elements */
+    uint32_t step_bark[LEVELS_STEPS_MAX];     /* the level of bark drawn with a step, */
+    uint16_t step_stout[LEVELS_STEPS_MAX];    /* where at least so wide; else its elements are */
     uint32_t step_elements[LEVELS_STEPS_MAX]; /* descending, each 1/sqrt(2) of the one before */
     float step_size[LEVELS_STEPS_MAX]; /* of an element, beside what keeps the plant's area */
 };

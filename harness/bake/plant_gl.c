@@ -26,6 +26,7 @@ static GLuint vertex_array(struct gl *gl, GLuint vertices, GLsizei stride, size_
     attribute(gl, array, 2, 0, 4, GL_UNSIGNED_SHORT, albedo_offset);
     attribute(gl, array, 5, 2, 4, GL_FLOAT, offsetof(struct plant_gl_placed, place));
     attribute(gl, array, 6, 2, 4, GL_FLOAT, offsetof(struct plant_gl_placed, turn));
+    attribute(gl, array, 7, 2, 1, GL_FLOAT, offsetof(struct plant_gl_placed, stout));
     return array;
 }
 
@@ -42,8 +43,8 @@ static GLuint upload_texture(struct gl *gl, const struct texture *texture)
     return name;
 }
 
-void plant_gl_detail(struct workspace *workspace, const struct detail *detail, GLuint placed,
-                     struct plant_gl *plant)
+void plant_gl_detail(struct workspace *workspace, const struct detail *detail,
+                     const struct levels *levels, GLuint placed, struct plant_gl *plant)
 {
     struct gl *gl = workspace->gl;
     GLuint vertices = gl_buffer(gl, (GLsizeiptr)(detail->vertices_count * sizeof *detail->vertices),
@@ -70,6 +71,8 @@ void plant_gl_detail(struct workspace *workspace, const struct detail *detail, G
                                          .texture =
                                              from->texture ? upload_texture(gl, from->texture) : 0};
         memcpy(batch->levels, from->levels, sizeof batch->levels);
+        for (uint32_t s = 0; s < levels->steps_count && from->kind == MATERIAL_BARK; s++)
+            batch->stout[s] = detail_stout(detail, b, levels->step_bark[s], levels->step_stout[s]);
     }
 }
 

@@ -3,13 +3,15 @@
 #define TREELINE_BAKE_PLANT_GL_H
 
 #include "bake/detail.h"
+#include "bake/levels.h"
 #include "bake/prune.h"
 #include "method/method.h"
 
 /* The instanced attributes: foot (m) and first element of the run; scale cos, scale sin, elements
- * of the run, their growth (negative: without bark). */
+ * of the run, their growth; the width from which on bark is left out of the run (as stout.h packs
+ * it, unorm). */
 struct plant_gl_placed {
-    float place[4], turn[4];
+    float place[4], turn[4], stout;
 };
 
 struct plant_gl_batch {
@@ -17,10 +19,11 @@ struct plant_gl_batch {
     GLuint texture; /* 0: none */
     bool flat, closed;
     struct detail_range levels[DETAIL_LEVELS_MAX];
+    struct detail_range stout[LEVELS_STEPS_MAX]; /* of bark, what is drawn with a step of pruning */
 };
 
 /* Attributes 0 position, 1 normal, 2 albedo, 3 texture coordinates, 4 an element's centre, 5 place,
- * 6 turn. */
+ * 6 turn, 7 stout. */
 struct plant_gl {
     GLuint detail, pruned; /* vertex arrays; pruned 0: none */
     size_t batches_count;
@@ -28,8 +31,8 @@ struct plant_gl {
 };
 
 /* placed: a buffer of struct plant_gl_placed. */
-void plant_gl_detail(struct workspace *workspace, const struct detail *detail, GLuint placed,
-                     struct plant_gl *plant);
+void plant_gl_detail(struct workspace *workspace, const struct detail *detail,
+                     const struct levels *levels, GLuint placed, struct plant_gl *plant);
 /* The index list is 0, 1, 2, ... twice: a run that starts late goes on at the beginning. */
 void plant_gl_pruned(struct workspace *workspace, const struct prune *prune, GLuint placed,
                      struct plant_gl *plant);

@@ -1,6 +1,7 @@
 /* Stochastic pruning: leaves and bark as one shuffled list of triangles. Sources in prune.h. */
 #include "bake/prune.h"
 #include "bake/detail.h"
+#include "bake/stout.h"
 #include "base/random.h"
 
 #include <math.h>
@@ -13,6 +14,7 @@ enum { ELEMENT_TRIANGLES_MAX = 4, TEXTURE_SAMPLES = 16, BARK_SAMPLES_MAX = 20000
 struct element {
     float corners[3][3], center[3], normal[3], albedo[3];
     bool leaf;
+    uint16_t width; /* of bark */
 };
 
 struct pruner {
@@ -21,6 +23,7 @@ struct pruner {
     size_t count, room;
     struct element *elements;
     double area_m2;
+    uint16_t *widths; /* of the mesh's vertices */
 };
 
 /* What is seen of a triangle: its opaque area, and albedo and position weighted by it. */
@@ -220,6 +223,7 @@ static void add_sample(struct pruner *pruner, uint32_t triangle, const struct ma
     if (!(patch.opaque > 0))
         return;
     struct element *element = new_element(pruner, false, patch.albedo);
+    element->width = pruner->widths[corners[0]];
     float length = 0;
     for (int axis = 0; axis < 3; axis++) {
         element->center[axis] = (float)patch.center[axis];
@@ -274,6 +278,7 @@ static void pack_elements(const struct pruner *pruner, const uint32_t *order, st
             detail_pack_normal(element->normal, vertex->normal);
             vertex->normal[3] = element->leaf ? INT16_MAX : 0;
             detail_pack_albedo(element->albedo, vertex->albedo);
+            vertex->albedo[3] = element->width;
         }
     }
 }
@@ -282,6 +287,7 @@ struct prune *prune_create(struct arena *arena, const struct mesh *mesh, uint64_
 {
     struct prune *prune = ARENA_NEW(arena, struct prune);
     struct pruner pruner = {.mesh = mesh, .random = random_seed(seed, 0x7072756e65)};
+    pruner.widths = stout_widths(arena, mesh);
     double bark = 0.5 * bark_area(mesh); /* a branch shows half of its surface */
     /* leaves make at most one element a triangle; bark is sampled as finely as it is cut, at most
      */

@@ -18,7 +18,7 @@ struct prune_vertex {
     float position_m[3];
     float center_m[3];  /* of the element: position = center + grow * (position - center) */
     int16_t normal[4];  /* snorm; w: 32767 leaf, 0 bark */
-    uint16_t albedo[4]; /* unorm, texture included */
+    uint16_t albedo[4]; /* unorm, texture included; w: of bark, its width, see stout.h */
 };
 
 struct prune {

@@ -19,7 +19,7 @@
 struct sift_vertex {
     float position_m[3];
     int16_t normal[4];  /* snorm; w: odd for leaves, the rest is the caller's */
-    uint16_t albedo[4]; /* unorm; w, of what is left: 1 / growth of the tree's run */
+    uint16_t albedo[4]; /* unorm; w: of bark, its width (stout.h); left, 1 / growth of the run */
 };
 
 /* Elements, each a few triangles about a centre (a leaf, a piece of bark). */
@@ -46,7 +46,7 @@ struct sift_run {
     const struct sift_set *set;
     uint32_t begin;
     float kept, growth, taper;
-    bool leaves_only; /* elements of bark are left out */
+    uint16_t stout; /* bark at least as wide is left out; 0: none */
 };
 
 struct sift_tree {

@@ -81,18 +81,24 @@ static struct sift_set *set_of_pruned(struct arena *arena, const struct prune *p
 }
 
 struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *detail,
-                                     const struct prune *prune, uint32_t species)
+                                     const struct prune *prune, const struct levels *levels,
+                                     uint32_t species)
 {
     struct sift_plant *plant = ARENA_NEW(arena, struct sift_plant);
     plant->batches_count = detail->batches_count;
     plant->bark = ARENA_ARRAY(arena, bool, detail->batches_count);
     plant->sets = arena_alloc(arena, detail->batches_count, sizeof *plant->sets);
+    plant->stout = arena_alloc(arena, detail->batches_count, sizeof *plant->stout);
     for (size_t b = 0; b < detail->batches_count; b++) {
         plant->bark[b] = detail->batches[b].kind == MATERIAL_BARK;
-        size_t levels = plant->bark[b] ? detail->levels_count : 1;
-        for (size_t level = 0; level < levels; level++)
+        size_t count = plant->bark[b] ? detail->levels_count : 1;
+        for (size_t level = 0; level < count; level++)
             plant->sets[b][level] =
                 set_of_range(arena, detail, &detail->batches[b], level, species);
+        for (uint32_t s = 0; s < levels->steps_count && plant->bark[b]; s++)
+            plant->stout[b][s] =
+                detail_stout(detail, b, levels->step_bark[s], levels->step_stout[s]).indices_count /
+                3;
     }
     if (prune && prune->count > 0)
         plant->pruned = set_of_pruned(arena, prune, species);

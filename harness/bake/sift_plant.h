@@ -3,6 +3,7 @@
 #define TREELINE_BAKE_SIFT_PLANT_H
 
 #include "bake/detail.h"
+#include "bake/levels.h"
 #include "bake/prune.h"
 #include "bake/sift.h"
 
@@ -14,6 +15,7 @@ struct sift_plant {
     size_t batches_count;
     bool *bark;                                  /* batches_count */
     struct sift_set *(*sets)[DETAIL_LEVELS_MAX]; /* batches_count; leaves: the first alone */
+    uint32_t (*stout)[LEVELS_STEPS_MAX];         /* batches_count: of bark, elements at a step */
     struct sift_set *pruned;                     /* NULL: none */
 };
 
@@ -22,6 +24,7 @@ bool sift_plant_possible(const struct mesh *mesh);
 
 /* prune: NULL for none. species: normal.w is 2 * species, + 1 for leaves; at most 8192. */
 struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *detail,
-                                     const struct prune *prune, uint32_t species);
+                                     const struct prune *prune, const struct levels *levels,
+                                     uint32_t species);
 
 #endif

@@ -267,7 +267,7 @@ static void sift_element(struct sift_work *work, const struct sift_run *run, siz
         struct projected p;
         struct box box;
         bool close = false;
-        if (run->leaves_only && !(corners[0].normal[3] & 1))
+        if (run->stout && !(corners[0].normal[3] & 1) && corners[0].albedo[3] >= run->stout)
             continue;
         for (int i = 0; i < 3; i++) {
             const float *at = corners[i].position_m;
