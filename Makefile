@@ -4,6 +4,7 @@
 #   make bench           installs what is missing, builds, runs the quick benchmark, writes the report
 #   make check           every test: units, command line, architecture, gcc and clang, sanitizers, EGL alone
 #   make test            the unit tests of one configuration; make test T="test_gl test_base" for some
+#   make new-method NAME=x             a method that works, with its test, to begin from
 #   make install PREFIX= DESTDIR=      make docs      make format      make lint      make clean
 #   gl=auto|egl|osmesa   which GL back ends to build in; auto takes those that pkg-config finds
 
@@ -61,7 +62,7 @@ BINARY := $(BUILD)/treeline
 IMAGE_SO := $(BUILD)/treeline_image.so
 TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(sort $(wildcard tests/test_*.c)))
 
-.PHONY: all plugins bench check test install format lint clean packages
+.PHONY: all plugins new-method bench check test install format lint clean packages
 .DELETE_ON_ERROR:
 .SECONDARY: $(GENERATED_C) $(GENERATED_H)
 
@@ -135,13 +136,13 @@ $(GEN)/gl_backends.c: Makefile
 	echo 'const char *const gl_backends[] = {'; \
 	for b in $(GL_BACKENDS); do n=$${b#gl_}; echo "    \"$${n//_/-}\","; done; \
 	echo '    NULL,'; echo '};'; } > $@
-to_c = { echo "static const char $(1)[] = {"; od -An -v -tx1 $(2) | sed 's/ \(..\)/0x\1,/g'; echo '0};'; }
-$(GEN)/%.glsl.h: methods/%.glsl Makefile
+GLSL_TO_C := harness/method/glsl_to_c.sh
+$(GEN)/%.glsl.h: methods/%.glsl $(GLSL_TO_C)
 	@mkdir -p $(@D)
-	@$(call to_c,$(subst -,_,$*)_glsl,$<) > $@
-$(GEN)/%.glsl.h: harness/bake/%.glsl Makefile
+	@$(GLSL_TO_C) $< > $@
+$(GEN)/%.glsl.h: harness/bake/%.glsl $(GLSL_TO_C)
 	@mkdir -p $(@D)
-	@$(call to_c,$(subst -,_,$*)_glsl,$<) > $@
+	@$(GLSL_TO_C) $< > $@
 
 # Tests: one program a file, against the archive; all of it where plugins are loaded.
 comma := ,
@@ -164,6 +165,9 @@ CHOSEN := $(if $(T),$(T:%=$(BUILD)/tests/%),$(TESTS))
 test: $(CHOSEN) all
 	@tests/run.sh $(CHOSEN)
 
+new-method:
+	@methods/skeleton/new.sh
+
 packages:
 	@.ci/install
 
@@ -182,6 +186,14 @@ install: all
 	install -m755 $(IMAGE_SO) $(DESTDIR)$(PREFIX)/lib/treeline/
 	cp -r scenes $(DESTDIR)$(PREFIX)/share/treeline/
 	install -Dm644 -t $(DESTDIR)$(PREFIX)/share/treeline/reports/template reports/template/*
+	for room in base bake method plant scene wall; do \
+	  install -Dm644 -t $(DESTDIR)$(PREFIX)/include/treeline/$$room harness/$$room/*.h; done
+	install -m644 $(GEN)/gl_functions.inc $(DESTDIR)$(PREFIX)/include/treeline/
+	install -m644 harness/method/plugin.mk $(DESTDIR)$(PREFIX)/share/treeline/
+	install -m755 $(GLSL_TO_C) $(DESTDIR)$(PREFIX)/share/treeline/
+	install -d $(DESTDIR)$(PREFIX)/lib/pkgconfig
+	sed "s/@ABI@/$$(sed -n 's/^.define METHOD_ABI \([0-9]*\).*/\1/p' harness/method/method.h)/" \
+	  harness/method/treeline.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/treeline.pc
 	install -d $(DESTDIR)$(PREFIX)/share/man/man1
 	$(BINARY) help man > $(DESTDIR)$(PREFIX)/share/man/man1/treeline.1
 

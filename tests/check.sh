@@ -44,6 +44,7 @@ part egl make -s -j"$jobs" gl=egl test T="test_gl test_methods"
 part cli tests/cli.sh
 part smoke tests/smoke.sh
 part page tests/page.sh
+part plugins tests/plugins.sh
 
 [ ${#failures[@]} -gt 0 ] && echo "failed parts: ${failures[*]}; their logs are build/check-PART.log"
 echo "$passed passed, $failed failed, $skipped skipped"
