@@ -5,6 +5,7 @@
 #   make check           every test: units, command line, architecture, gcc and clang, sanitizers, EGL alone
 #   make test            the unit tests of one configuration; make test T="test_gl test_base" for some
 #   make new-method NAME=x             a method that works, with its test, to begin from
+#   make fuzz            libFuzzer on every loader, an hour in all; make fuzz FUZZ_SECONDS=60 T="scene mesh" for less
 #   make install PREFIX= DESTDIR=      make docs      make format      make lint      make clean
 #   gl=auto|egl|osmesa   which GL back ends to build in; auto takes those that pkg-config finds
 
@@ -34,9 +35,10 @@ MODE_release := -O3 -g
 MODE_debug := -O0 -g
 MODE_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 MODE_thread := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
+MODE_fuzz := $(MODE_sanitize) -fsanitize=fuzzer-no-link
 MODE := $(MODE_$(config))
 ifeq ($(MODE),)
-$(error config=$(config) is not one of release, debug, sanitize, thread)
+$(error config=$(config) is not one of release, debug, sanitize, thread, fuzz)
 endif
 # -ffp-contract=off: the same forest and the same picture from every compiler.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(WARN) $(MODE) -fPIC -fopenmp -ffp-contract=off -fno-math-errno \
@@ -74,6 +76,7 @@ $(BINARY): $(BUILD)/harness/cli/treeline.o $(ARCHIVE)
 
 # The C programs that load the shim have no C++ half of the undefined-behaviour sanitizer.
 SHIM_sanitize = -fno-sanitize=vptr$(if $(findstring clang,$(CC)),$(comma)function)
+SHIM_fuzz = $(SHIM_sanitize)
 $(IMAGE_SO): harness/wall/oiio.cpp harness/wall/oiio.h
 	@mkdir -p $(@D)
 	$(CXX) $(CXXFLAGS_ALL) $(SHIM_$(config)) -shared -o $@ $< $(shell pkg-config --libs OpenImageIO 2>/dev/null)
@@ -167,6 +170,16 @@ test: $(CHOSEN) all
 
 new-method:
 	@methods/skeleton/new.sh
+
+# libFuzzer on the loaders, with clang's coverage and sanitizers in a build of its own.
+FUZZ_SECONDS ?= 3600
+$(BUILD)/fuzz: tests/fuzz/fuzz.c tests/fuzz/targets.h $(ARCHIVE) $(IMAGE_SO)
+	$(CC) $(CFLAGS_ALL) -Itests $(LDFLAGS_ALL) -fsanitize=fuzzer -o $@ $< $(ARCHIVE) $(LIBS)
+fuzz-build:
+	@$(MAKE) --no-print-directory CC=clang config=fuzz build/fuzz-clang/fuzz
+fuzz: fuzz-build
+	@tests/fuzz.sh $(FUZZ_SECONDS) $(T)
+.PHONY: fuzz fuzz-build
 
 packages:
 	@.ci/install

@@ -98,6 +98,27 @@ static void *take(struct cursor *cursor, uint64_t count, size_t size)
     return copy;
 }
 
+/* The next size bytes as a text; NULL when they do not end in a NUL. */
+static const char *take_text(struct cursor *cursor, uint32_t size)
+{
+    const char *text = take(cursor, size, 1);
+    if (text && size > 0 && text[size - 1] == '\0')
+        return text;
+    cursor->torn = true;
+    return NULL;
+}
+
+/* A path, the bytes of a picture, or as many texels as its size says. */
+static bool texture_is_whole(const struct import_texture *texture)
+{
+    if (texture->path || memchr(texture->format, '\0', sizeof texture->format) == NULL)
+        return texture->path != NULL;
+    if (texture->format[0] || texture->width_px <= 0)
+        return texture->width_px == 0 && texture->height_px == 0;
+    return texture->height_px > 0 &&
+           texture->bytes_size / 4 / (size_t)texture->width_px == (size_t)texture->height_px;
+}
+
 static const struct import_texture *take_texture(struct cursor *cursor)
 {
     const struct texture_head *head = take(cursor, 1, sizeof *head);
@@ -108,8 +129,9 @@ static const struct import_texture *take_texture(struct cursor *cursor)
     texture->height_px = head->height_px;
     texture->bytes_size = head->bytes_size;
     memcpy(texture->format, head->format, sizeof texture->format);
-    texture->path = head->path_size ? take(cursor, head->path_size, 1) : NULL;
-    texture->bytes = head->bytes_size ? take(cursor, head->bytes_size, 1) : NULL;
+    texture->path = head->path_size ? take_text(cursor, head->path_size) : NULL;
+    texture->bytes = take(cursor, head->bytes_size, 1);
+    cursor->torn |= !texture_is_whole(texture);
     return texture;
 }
 
@@ -121,9 +143,22 @@ static void take_material(struct cursor *cursor, struct import_material *to)
     memcpy(to->albedo, head->albedo, sizeof to->albedo);
     to->alpha_cutoff = head->alpha_cutoff;
     to->alpha_ignored = head->alpha_ignored;
-    to->name = take(cursor, head->name_size, 1);
+    to->name = take_text(cursor, head->name_size);
     to->color = head->has_color ? take_texture(cursor) : NULL;
     to->opacity = head->has_opacity ? take_texture(cursor) : NULL;
+}
+
+/* Every corner is a vertex, every triangle has a material. */
+static bool triangles_are_whole(const struct import_soup *soup)
+{
+    for (size_t i = 0; i < soup->triangles_count; i++) {
+        if (soup->triangle_material[i] >= soup->materials_count)
+            return false;
+        for (int k = 0; k < 3; k++)
+            if (soup->triangles[i][k] >= soup->vertices_count)
+                return false;
+    }
+    return true;
 }
 
 static struct import_soup *take_soup(struct cursor *cursor)
@@ -147,7 +182,8 @@ static struct import_soup *take_soup(struct cursor *cursor)
     soup->materials = ARENA_ARRAY(cursor->arena, struct import_material, head->materials_count);
     for (size_t i = 0; i < soup->materials_count; i++)
         take_material(cursor, &soup->materials[i]);
-    return cursor->torn || cursor->at != cursor->size ? NULL : soup;
+    bool whole = !cursor->torn && cursor->at == cursor->size && triangles_are_whole(soup);
+    return whole ? soup : NULL;
 }
 
 struct import_soup *soup_read(struct arena *arena, int file)
