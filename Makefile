@@ -122,6 +122,7 @@ $(GEN)/build_facts.h: FORCE
 	@{ echo '/* Generated: the revision and the libraries of this build. */'; \
 	revision=$$(git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null); \
 	echo "#define TREELINE_REVISION \"$${revision:-unknown}\""; \
+	date=$$(git log -1 --format=%cs 2>/dev/null); echo "#define TREELINE_DATE \"$${date:-undated}\""; \
 	list="embree $(call version_of,embree$(EMBREE)/rtcore.h,RTC_VERSION_STRING)"; \
 	list="$$list, meshoptimizer $(call version_of,meshoptimizer.h,MESHOPTIMIZER_VERSION)"; \
 	for p in OpenImageIO $(PKG); do list="$$list, $$p $$(pkg-config --modversion $$p 2>/dev/null)"; done; \
@@ -207,12 +208,14 @@ install: all
 	install -d $(DESTDIR)$(PREFIX)/lib/pkgconfig
 	sed "s/@ABI@/$$(sed -n 's/^.define METHOD_ABI \([0-9]*\).*/\1/p' harness/method/method.h)/" \
 	  harness/method/treeline.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/treeline.pc
-	install -d $(DESTDIR)$(PREFIX)/share/man/man1
-	$(BINARY) help man > $(DESTDIR)$(PREFIX)/share/man/man1/treeline.1
+	$(BINARY) help man > $(BUILD)/treeline.1
+	install -Dm644 -t $(DESTDIR)$(PREFIX)/share/man/man1 $(BUILD)/treeline.1
+	install -Dm644 -t $(DESTDIR)$(PREFIX)/share/doc/treeline README.md CHANGELOG.md CITATION.cff GLOSSARY.md LICENSE
 
-# Documents made by the program itself; the check compares them.
+# Documents made by the program itself; the check compares them. Read the manual with: man -l treeline.1
 docs: all
 	@./treeline help methods > methods/README.md
+	@./treeline help man > $(BUILD)/treeline.1
 
 FORMAT := $(shell git ls-files '*.c' '*.h' '*.cpp' 2>/dev/null)
 format:

@@ -46,6 +46,7 @@ part fuzz make -s -j"$jobs" fuzz FUZZ_SECONDS=60
 part smoke tests/smoke.sh
 part page tests/page.sh
 part plugins tests/plugins.sh
+part documents tests/documents.sh
 
 [ ${#failures[@]} -gt 0 ] && echo "failed parts: ${failures[*]}; their logs are build/check-PART.log"
 echo "$passed passed, $failed failed, $skipped skipped"

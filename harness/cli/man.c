@@ -1,6 +1,8 @@
 /* The manual page: every verb's own --help, the exit codes, files and environment. */
 #include "cli/cli.h"
 
+#include "build_facts.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,9 +57,10 @@ static int verb_print(const struct verb *verb)
 
 int man_page(void)
 {
-    printf(".TH TREELINE 1\n.SH NAME\ntreeline \\- compare ways to draw a tree and a forest\n"
+    printf(".TH TREELINE 1 " TREELINE_DATE " " TREELINE_REVISION
+           "\n.SH NAME\ntreeline \\- compare ways to draw a tree and a forest\n"
            ".SH SYNOPSIS\n.B treeline\n.I VERB\n[OPTION...]\n.SH DESCRIPTION\n"
-           "Draws, times and judges representations of trees against a ray\\-traced reference.\n"
+           "Draws, times and judges representations of trees against a ray\\-traced\nreference.\n"
            "Tables and JSON go to standard output, everything else to standard error.\n"
            ".SH VERBS\n");
     for (const struct verb *verb = verbs; verb->name; verb++) {
