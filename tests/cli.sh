@@ -67,6 +67,8 @@ refuses '--retry without --resume' 64 '--resume' run "${good[@]}" --retry --out 
 refuses 'trees out of range' 65 "trees: '-1' is not a whole number in 0..4000000" run --scene tiny --method null --trees=-1
 refuses 'an unknown level' 65 'low.intermediate.high.auto' run "${good[@]}" --lod best
 refuses 'an unknown target' 65 'rgba8.rgba16f.rgba32f' run "${good[@]}" --target rgb
+try run "${good[@]}" --rounds 1 --dry-run
+is 'one cell and one round are not many' "$(grep -c ' 1 cell, 1 round,' "$work/err")" -eq 1
 refuses 'a size that is none' 65 'WIDTHxHEIGHT' run --scene tiny --method null --size 800
 refuses 'an unknown scene names the nearest' 66 'tiny' run --scene tinny --method null
 refuses 'an unknown method names the nearest' 66 "did you mean 'null'" run --scene tiny --method nul

@@ -62,6 +62,10 @@ if re.search(r"url\((?!#|data:)", text) or "@import" in text:
     found.append("a style from outside")
 if re.search(r"(?<![\w-])-?(nan|inf)(?![\w-])", " ".join(page.words), re.IGNORECASE):
     found.append("the page shows a NaN or an infinity")
+if one := re.search(r"(?<![\w.,])1 (trees|cells|views|cores|rounds|pictures)\b", " ".join(page.words)):
+    found.append(f"'{one.group()}'")
+if one := re.search(r'data-unit=" tree">(?!1<)|data-unit=" trees">1<', text):
+    found.append(f"a wrong plural: {one.group()}")
 
 plots = os.path.join(out, "plots")
 for name in sorted(os.listdir(plots)) if os.path.isdir(plots) else []:

@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/plural.h"
 #include "base/progress.h"
 #include "cell/process.h"
 #include "cell/stage.h"
@@ -148,10 +149,10 @@ static enum status shoot_run(struct arena *arena, struct shoot *shoot, struct li
     if (!status && !outcome.signal && !outcome.exit_code)
         return STATUS_OK;
     const char *why = status ? error.text : outcome.errors;
-    fprintf(stderr,
-            "treeline: no reference for %s with %zu trees, its cells run uncompared: %s%s%s\n",
-            shoot->cell->scene, shoot->cell->trees, outcome.signal ? strsignal(outcome.signal) : "",
-            outcome.signal && *why ? ": " : "", why);
+    fprintf(
+        stderr, "treeline: no reference for %s with %zu tree%s, its cells run uncompared: %s%s%s\n",
+        shoot->cell->scene, shoot->cell->trees, plural(shoot->cell->trees),
+        outcome.signal ? strsignal(outcome.signal) : "", outcome.signal && *why ? ": " : "", why);
     return STATUS_OK;
 }
 
@@ -168,8 +169,8 @@ enum status cell_references(struct arena *arena, const struct plan *plan, const 
     struct listener listener = {.progress = progress_start("references", (double)count, quiet)};
     for (size_t i = 0; i < count && !status; i++) {
         listener.before = i;
-        listener.label =
-            arena_printf(arena, "%s, %zu trees", shoots[i].cell->scene, shoots[i].cell->trees);
+        listener.label = arena_printf(arena, "%s, %zu tree%s", shoots[i].cell->scene,
+                                      shoots[i].cell->trees, plural(shoots[i].cell->trees));
         progress_update(listener.progress, (double)i, listener.label);
         status = shoot_run(arena, &shoots[i], &listener);
     }

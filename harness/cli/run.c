@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/hash.h"
+#include "base/plural.h"
 #include "base/progress.h"
 #include "cell/cell.h"
 #include "report/report.h"
@@ -134,9 +135,9 @@ static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct 
         }
     if (!rounds->request->quiet)
         fprintf(stderr,
-                "treeline: %zu repetitions of %zu cells into %s, about %.0f s of measuring\n",
-                rounds->count, plan->cells_count, rounds->folder,
-                (double)rounds->count * repetition_guess_seconds(plan));
+                "treeline: %zu repetition%s of %zu cell%s into %s, about %.0f s of measuring\n",
+                rounds->count, plural(rounds->count), plan->cells_count, plural(plan->cells_count),
+                rounds->folder, (double)rounds->count * repetition_guess_seconds(plan));
     if (!rounds->count)
         return STATUS_OK;
     status = cell_references(arena, plan, rounds->folder, rounds->request->quiet, error);
@@ -183,8 +184,8 @@ static enum status run_all(struct arena *arena, const struct run_request *reques
         STATUS_INTERRUPTED) /* a second Ctrl-C must not cut what is said about the first */
         sigprocmask(SIG_SETMASK, &before, NULL);
     if (!status && rounds.failed)
-        return error_set(error, STATUS_CELLS_FAILED, "%zu of %zu repetitions failed", rounds.failed,
-                         rounds.count);
+        return error_set(error, STATUS_CELLS_FAILED, "%zu of %zu repetition%s failed",
+                         rounds.failed, rounds.count, plural(rounds.count));
     return status;
 }
 
@@ -193,8 +194,9 @@ static enum status plan_print(const struct plan *plan)
     for (size_t i = 0; i < plan->cells_count; i++)
         printf("%s\n", plan->cells[i].name);
     double seconds = (double)plan->cells_count * plan->rounds * repetition_guess_seconds(plan);
-    fprintf(stderr, "treeline: %zu cells, %d rounds, about %.0f s of measuring\n",
-            plan->cells_count, plan->rounds, seconds);
+    fprintf(stderr, "treeline: %zu cell%s, %d round%s, about %.0f s of measuring\n",
+            plan->cells_count, plural(plan->cells_count), plan->rounds,
+            plural((size_t)plan->rounds), seconds);
     return STATUS_OK;
 }
 

@@ -2,6 +2,7 @@
  * groups. */
 #include "report/book.h"
 
+#include "base/plural.h"
 #include "stats/stats.h"
 
 #include <math.h>
@@ -107,7 +108,7 @@ void answer_headline(const struct book *book, FILE *out)
     fputs("In ", out);
     html_put(out, book->families[group->family]);
     fprintf(out, " with %s tree%s, ", number_plain((double)group->trees, 15).text,
-            group->trees == 1 ? "" : "s");
+            plural(group->trees));
     for (size_t k = 0; k < 3; k++) {
         if (k > 0 && told[k] <= told[k - 1])
             continue;
@@ -130,7 +131,7 @@ void answer_fronts(const struct book *book, FILE *out)
         size_t count = book_front(book, group, front);
         fputs("<tr><th scope=\"row\" class=\"scene\">", out);
         html_put(out, book->families[group->family]);
-        fprintf(out, "</th><td class=\"n\">%s</td><td>",
+        fprintf(out, "</th><td class=\"n\" data-unit=\" tree%s\">%s</td><td>", plural(group->trees),
                 number_plain((double)group->trees, 15).text);
         for (size_t k = 0; k < count; k++) {
             const struct row *row = &book->rows[front[k]];

@@ -3,6 +3,7 @@
 #include "report/book.h"
 
 #include "base/hash.h"
+#include "base/plural.h"
 #include "stats/stats.h"
 
 #include <math.h>
@@ -249,7 +250,7 @@ static void make_groups(struct book *book)
         group->family = index_of(book->families, &book->families_count, family);
         group->title =
             arena_printf(arena, "%s, %s tree%s", family,
-                         number_plain((double)group->trees, 15).text, group->trees == 1 ? "" : "s");
+                         number_plain((double)group->trees, 15).text, plural(group->trees));
         group->slug = slug_of(arena, family, group->trees);
         group->rows = ARENA_ARRAY(arena, size_t, book->rows_count);
         for (size_t i = 0; i < book->rows_count; i++) {

@@ -2,6 +2,7 @@
 #include "report/book.h"
 
 #include "base/file.h"
+#include "base/plural.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -93,7 +94,8 @@ static void put_facts(const struct page *page)
         seen += book->rows[i].summary->repetitions + book->rows[i].summary->failures;
     }
     char cells[96];
-    snprintf(cells, sizeof cells, "%zu cells, %zu failed", book->rows_count, failed);
+    snprintf(cells, sizeof cells, "%zu cell%s, %zu failed", book->rows_count,
+             plural(book->rows_count), failed);
     char repetitions[64];
     snprintf(repetitions, sizeof repetitions, "%zu", seen);
     put(page, "<dl class=\"facts\">\n");
@@ -233,7 +235,7 @@ static void put_pictures(const struct page *page)
     if (gallery.missing)
         fprintf(page->out,
                 "<p class=\"notice\">%zu picture%s could not be shown; each place says why.</p>\n",
-                gallery.missing, gallery.missing == 1 ? "" : "s");
+                gallery.missing, plural(gallery.missing));
 }
 
 static void put_number_cell(const struct page *page, const struct row *row,
@@ -398,7 +400,7 @@ static void put_provenance(const struct page *page)
     put_pair(page, "host", from->host);
     put_pair(page, "CPU",
              arena_printf(arena, "%s, %d core%s", from->cpu ? from->cpu : "unknown", from->cores,
-                          from->cores == 1 ? "" : "s"));
+                          plural((size_t)from->cores)));
     put_pair(page, "memory",
              arena_printf(arena, "%s GB", number_plain(from->memory_bytes * 1e-9, 3).text));
     put_pair(page, "system", from->os);
