@@ -219,13 +219,16 @@ static void test_plan__a_file_is_overridden_by_the_command_line(void **state)
     const char *path = file_with(
         arena,
         "{\"doc\": \"t\", \"scenes\": [\"tiny\"], \"methods\": [\"null\"], \"trees\": \"1,2\", "
-        "\"rounds\": 7, \"frame_seconds\": 0.25, \"seed\": 9, \"views\": 3}");
+        "\"rounds\": 7, \"frame_seconds\": 0.25, \"seed\": 9, \"views\": 3, \"threads\": 2, "
+        "\"memory_bytes\": 1e9}");
     struct plan *plan = plan_of(arena, &(struct plan_request){.plan_path = path});
     assert_int_equal(plan->cells_count, 2);
     assert_int_equal(plan->rounds, 7);
     assert_true(plan->frame_seconds == 0.25);
     assert_true(plan->cells[0].seed == 9);
     assert_int_equal(plan->views_count, 3);
+    assert_int_equal(plan->threads, 2);
+    assert_int_equal(plan->memory_bytes, 1000000000);
     struct plan *other = plan_of(
         arena, &(struct plan_request){
                    .plan_path = path, .trees = "4", .rounds = 2, .seed_given = true, .seed = 0});
@@ -234,7 +237,14 @@ static void test_plan__a_file_is_overridden_by_the_command_line(void **state)
     assert_true(other->cells[0].seed == 0);
     assert_int_equal(other->rounds, 2);
     assert_true(other->frame_seconds == 0.25);
+    assert_int_equal(other->threads, 2);
     assert_true(plan->hash != other->hash);
+    /* 0 threads are all of them, 0 bytes no budget: both can be said. */
+    struct plan *zeros = plan_of(
+        arena,
+        &(struct plan_request){.plan_path = path, .threads_given = true, .memory_given = true});
+    assert_int_equal(zeros->threads, 0);
+    assert_int_equal(zeros->memory_bytes, 0);
     unlink(path);
     arena_destroy(arena);
 }

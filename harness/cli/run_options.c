@@ -53,7 +53,7 @@ static const struct argp_option options[] = {
     {"frames-max", KEY_FRAMES_MAX, "N", 0, "timed frames of a repetition at most", 2},
     {"views", KEY_VIEWS, "N", 0, "pictures compared along the camera path", 2},
     {"timeout", KEY_TIMEOUT, "S", 0, "time limit of a repetition", 2},
-    {"memory", KEY_MEMORY, "SIZE", 0, "budget of a method's host memory, such as 2G", 2},
+    {"memory", KEY_MEMORY, "SIZE", 0, "budget of a method's host memory, such as 2G; 0 for none", 2},
     {"threads", KEY_THREADS, "N", 0, "threads of llvmpipe and of CPU methods, 0 for all", 2},
     {"backend", KEY_BACKEND, "NAME", 0, "GL back end: osmesa, egl-surfaceless, egl-device", 2},
     {"reference-error", KEY_REFERENCE_ERROR, "E", 0, "standard error of the references", 2},
@@ -96,9 +96,11 @@ static error_t parse_measuring(int key, const char *text, const struct argp_stat
         return 0;
     case KEY_MEMORY:
         plan->memory_bytes = cli_bytes(state, "memory", text);
+        plan->memory_given = true;
         return 0;
     case KEY_THREADS:
         plan->threads = cli_integer(state, "threads", text, 0, 1024);
+        plan->threads_given = true;
         return 0;
     case KEY_BACKEND:
         plan->backend = text;

@@ -54,7 +54,7 @@ struct plan_request {
     int rounds, threads, frames_max, reference_samples_max;
     double frame_seconds, timeout_seconds, reference_error;
     size_t views_count, memory_bytes;
-    bool seed_given;
+    bool seed_given, threads_given, memory_given; /* their 0 means something */
     uint64_t seed;
     const char *backend;
 };

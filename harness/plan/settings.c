@@ -43,19 +43,20 @@ enum status plan_settings_override(struct plan_settings *settings,
     const struct {
         const char *name;
         double value;
+        bool zero; /* 0 was given, not left out */
     } given[] = {
-        {"rounds", request->rounds},
-        {"frame_seconds", request->frame_seconds},
-        {"frames_max", request->frames_max},
-        {"timeout_seconds", request->timeout_seconds},
-        {"memory_bytes", (double)request->memory_bytes},
-        {"reference_error", request->reference_error},
-        {"reference_samples_max", request->reference_samples_max},
-        {"threads", request->threads},
-        {"views", (double)request->views_count},
+        {"rounds", request->rounds, false},
+        {"frame_seconds", request->frame_seconds, false},
+        {"frames_max", request->frames_max, false},
+        {"timeout_seconds", request->timeout_seconds, false},
+        {"memory_bytes", (double)request->memory_bytes, request->memory_given},
+        {"reference_error", request->reference_error, false},
+        {"reference_samples_max", request->reference_samples_max, false},
+        {"threads", request->threads, request->threads_given},
+        {"views", (double)request->views_count, false},
     };
     for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
-        if (given[i].value == 0)
+        if (given[i].value == 0 && !given[i].zero)
             continue;
         char text[32];
         snprintf(text, sizeof text, "%.17g", given[i].value);
