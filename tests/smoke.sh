@@ -35,6 +35,16 @@ check 'an installation writes a page' away report "$run" --out "$folder/away"
 check 'an installation has its manual' grep -q '^.SH VERBS' "$folder/prefix/share/man/man1/treeline.1"
 check 'methods/README.md says what the program says (make docs)' bash -c './treeline help methods | diff - methods/README.md'
 check 'no NaN is shown' bash -c "! grep -wE 'nan|-nan|NaN' '$page'/tables/*"
+# Half of Europe writes 0,5: neither what is read nor what is written may follow.
+localedef -i de_DE -f UTF-8 "$folder/de_DE.UTF-8" 2>/dev/null
+commas() { env LOCPATH="$folder" LC_ALL=de_DE.UTF-8 "$@"; }
+check 'there is a locale with decimal commas' bash -c "[ \"\$(LOCPATH='$folder' LC_ALL=de_DE.UTF-8 bash -c 'printf %.1f 0,5')\" = 0,5 ]"
+check 'a report is written in it' commas ./treeline report "$run" --out "$folder/commas"
+check 'it is the same report' diff -r "$page" "$folder/commas"
+still=(render --scene tiny --method polygons:error_px=1.5 --quiet --output)
+check 'a picture is drawn' ./treeline "${still[@]}" "$folder/points.exr"
+check 'a picture is drawn in it' commas ./treeline "${still[@]}" "$folder/commas.exr"
+check 'it is the same picture' cmp "$folder/points.exr" "$folder/commas.exr"
 check 'the results make sense' python3 - "$run/cells.jsonl" <<'PY'
 import json, sys
 lines = [json.loads(line) for line in open(sys.argv[1])]
