@@ -97,6 +97,8 @@ refuses 'a folder without a name' 64 "'' is not the name of a folder" run "${goo
 # A pipe has no end to wait for.
 mkdir "$work/pipes" && mkfifo "$work/pipes/cells.jsonl" "$work/pipe.json"
 refuses 'a plan that is a pipe' 65 'not a regular file' run "$work/pipe.json"
+truncate -s 16777217 "$work/large.json"
+refuses 'a plan above 16 MiB' 65 'has 16777217 bytes; at most 16777216 are allowed' run "$work/large.json"
 refuses 'a scene that is a pipe' 65 'not a regular file' run --scene "$work/pipe.json" --method null
 refuses 'a picture that is a pipe' 65 'not a regular file' diff "$work/pipe.json" "$work/pipe.json"
 refuses 'results that are a pipe' 65 'not a regular file' report "$work/pipes"

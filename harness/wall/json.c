@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NESTING_MAX = 64, FILE_BYTES_MAX = 256 << 20 };
+enum { NESTING_MAX = 64, FILE_BYTES_MAX = 16 << 20 };
 
 enum json_type { JSON_NULL, JSON_BOOL, JSON_NUMBER, JSON_TEXT, JSON_ARRAY, JSON_OBJECT };
 static const char *const type_words[] = {"null",   "true or false", "a number",
