@@ -1,4 +1,5 @@
-/* Imported plants: small OBJ, PLY, glTF and GLB files are written and read back; bad ones refused. */
+/* Imported plants: small OBJ, PLY, glTF and GLB files are written and read back; bad ones refused.
+ */
 #include "testing.h"
 
 #include "plant_files.h"
@@ -209,6 +210,40 @@ static void test_import__scales_turns_and_recolours(void **state)
         if (mesh->positions[i][1] > 1)
             assert_vector(mesh->positions[i], -2.0 / 3, 20, 2.0 / 3);
     assert_float_equal(mesh->minimum_m[2], -(3 - 5.0 / 3) * 4, 1e-5);
+    arena_destroy(arena);
+}
+
+/* A tube, a closed box and a bent leaf of one material: the leaf alone is flat and open. */
+static void test_import__flat_open_pieces_are_leaves_where_no_material_is(void **state)
+{
+    (void)state;
+    put_text("parts.mtl", "newmtl stuff\nKd 0.3 0.2 0.1\n");
+    put_text("parts.obj", "mtllib parts.mtl\nusemtl stuff\n"
+                          "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 3 0\nv 1 3 0\nv 1 3 1\nv 0 3 1\n"
+                          "v 2 3 0\nv 3 3 0\nv 3 3 1\nv 2 3 1\nv 2 4 0\nv 3 4 0\nv 3 4 1\nv 2 4 1\n"
+                          "v 4 4 0\nv 5 4.5 0\nv 6 4 0\nv 4 4 1\nv 5 4.5 1\nv 6 4 1\n"
+                          "f 17 20 21 18\n"
+                          "f 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
+                          "f 9 13 14 10\nf 10 14 15 11\nf 11 15 16 12\nf 12 16 13 9\n"
+                          "f 9 10 11 12\nf 16 15 14 13\n"
+                          "f 18 21 22 19\n");
+    const float green[3] = {0.1f, 0.2f, 0.05f};
+    struct plant_import import = {.leaf_albedo = green};
+    struct arena *arena = arena_create(0);
+    const struct mesh *mesh = imported(arena, "parts.obj", &import);
+    assert_int_equal(mesh->parts_count, 2);
+    const struct mesh_part *bark = &mesh->parts[0], *leaf = &mesh->parts[1];
+    assert_int_equal(mesh->materials[bark->material].kind, MATERIAL_BARK);
+    assert_int_equal(mesh->materials[leaf->material].kind, MATERIAL_LEAF);
+    assert_vector(mesh->materials[bark->material].albedo, 0.3, 0.2, 0.1);
+    assert_vector(mesh->materials[leaf->material].albedo, 0.1, 0.2, 0.05);
+    assert_int_equal(bark->triangles_count, 8 + 12);
+    assert_int_equal(leaf->triangles_count, 4);
+    assert_int_equal(leaf->elements_count, 1);
+    /* Who says that there are no leaves is believed. */
+    mesh = imported(arena, "parts.obj", &(struct plant_import){.leaf = ""});
+    assert_int_equal(mesh->parts_count, 1);
+    assert_int_equal(mesh->materials[mesh->parts[0].material].kind, MATERIAL_BARK);
     arena_destroy(arena);
 }
 
@@ -581,6 +616,7 @@ int main(void)
         cmocka_unit_test(test_obj__texture_is_decoded_and_stands_upright),
         cmocka_unit_test(test_obj__opacity_map_makes_holes_and_marks_leaves),
         cmocka_unit_test(test_import__scales_turns_and_recolours),
+        cmocka_unit_test(test_import__flat_open_pieces_are_leaves_where_no_material_is),
         cmocka_unit_test(test_ply__integer_colours_are_decoded_and_float_ones_are_linear),
         cmocka_unit_test(test_gltf__applies_nodes_mirrors_and_linear_colours),
         cmocka_unit_test(test_gltf__opaque_materials_have_no_holes_and_cutoffs_are_kept),

@@ -13,7 +13,7 @@
 #include <strings.h>
 
 enum {
-    IMPORT_VERSION = 1, /* raised whenever the same files give another mesh */
+    IMPORT_VERSION = 2, /* raised whenever the same files give another mesh */
     TRIANGLES_LIMIT = 50000000,
 };
 static const size_t file_limit_bytes = (size_t)8 << 30;

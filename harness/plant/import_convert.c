@@ -1,10 +1,10 @@
 /* From a soup of triangles to a plant's mesh: placed, classified, welded, ordered by part and leaf.
  *
- * 1. each material is bark or leaf;
+ * 1. each material is bark or leaf, by its name or because its texture has holes;
  * 2. vertices of equal position are one point; triangles without area are dropped;
+ *    where no material is a leaf's, connected pieces that are flat and open are leaves;
  * 3. axes turned to +y up, scaled to the height wanted, foot moved to the origin;
- * 4. triangles that share points make one leaf (union by size, path halving: Tarjan 1975,
- *    doi:10.1145/321879.321884);
+ * 4. triangles that share points make one leaf;
  * 5. bark parts, then leaf parts, a leaf's triangles side by side;
  * 6. missing normals: smooth over points on bark, flat on leaves; equal vertices are shared. */
 #include "base/hash.h"
@@ -24,8 +24,9 @@ struct convert {
     const struct import_request *request;
     struct import_soup *soup;
     struct mesh *mesh;
+    bool has_leaves;     /* some material is a leaf's by its name or its texture */
     uint32_t *point;     /* of each soup vertex: the first vertex at the same position */
-    uint32_t *leaf_root; /* union-find over points */
+    uint32_t *leaf_root; /* of each point: the same number for all points of a leaf */
     uint32_t *order;     /* soup triangles in the order of the mesh */
     float (*smooth)[3];  /* bark normals of points */
     bool *keep;          /* of each soup triangle */
@@ -92,21 +93,21 @@ static enum status classify(struct convert *convert, const struct texture *const
     const struct import_request *request = convert->request;
     const char *words = request->leaf ? request->leaf : "leaf,leaves,foliage,needle,feuille";
     struct mesh *mesh = convert->mesh;
-    bool any = false;
     mesh->materials_count = convert->soup->materials_count;
-    mesh->materials = ARENA_ARRAY(convert->arena, struct material, mesh->materials_count);
+    mesh->materials = ARENA_ARRAY(convert->arena, struct material, 2 * mesh->materials_count);
     for (size_t i = 0; i < mesh->materials_count; i++) {
         const struct import_material *from = &convert->soup->materials[i];
         struct material *to = &mesh->materials[i];
         to->name = arena_strdup(convert->arena, from->name);
         bool leaf = name_matches(from->name, words) || (!request->leaf && has_holes[i]);
         to->kind = leaf ? MATERIAL_LEAF : MATERIAL_BARK;
-        any |= leaf;
+        convert->has_leaves |= leaf;
         const float *albedo = leaf ? request->leaf_albedo : request->bark_albedo;
         memcpy(to->albedo, albedo ? albedo : from->albedo, sizeof to->albedo);
         to->texture = textures[i];
     }
-    return any || !request->leaf ? STATUS_OK : unmatched(convert);
+    bool wanted = request->leaf && *request->leaf;
+    return convert->has_leaves || !wanted ? STATUS_OK : unmatched(convert);
 }
 
 /* A set of records by their bytes: open addressing over the records' numbers. */
@@ -200,6 +201,34 @@ static enum status drop_degenerate(struct convert *convert, size_t *kept)
     return STATUS_OK;
 }
 
+/* Each material of flat pieces becomes a leaf's; one of other pieces too gets a twin for them. */
+static void classify_by_shape(struct convert *convert)
+{
+    struct import_soup *soup = convert->soup;
+    struct mesh *mesh = convert->mesh;
+    size_t count = mesh->materials_count;
+    const bool *flat = import_flat(convert->scratch, soup, convert->point, convert->keep);
+    bool *has[2] = {ARENA_ARRAY(convert->scratch, bool, count),
+                    ARENA_ARRAY(convert->scratch, bool, count)};
+    uint32_t *leaf = ARENA_ARRAY(convert->scratch, uint32_t, count);
+    for (size_t i = 0; i < soup->triangles_count; i++)
+        if (convert->keep[i])
+            has[flat[i]][soup->triangle_material[i]] = true;
+    for (uint32_t m = 0; m < count; m++) {
+        if (!has[1][m])
+            continue;
+        leaf[m] = has[0][m] ? (uint32_t)mesh->materials_count++ : m;
+        struct material *to = &mesh->materials[leaf[m]];
+        *to = mesh->materials[m];
+        to->kind = MATERIAL_LEAF;
+        const float *albedo = convert->request->leaf_albedo;
+        memcpy(to->albedo, albedo ? albedo : soup->materials[m].albedo, sizeof to->albedo);
+    }
+    for (size_t i = 0; i < soup->triangles_count; i++)
+        if (convert->keep[i] && flat[i])
+            soup->triangle_material[i] = leaf[soup->triangle_material[i]];
+}
+
 /* Marks the points that the kept triangles use, one vertex for each position. */
 static bool *used_points(const struct convert *convert)
 {
@@ -253,37 +282,13 @@ static enum status place_soup(struct convert *convert)
     return STATUS_OK;
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
 static void connect_leaves(struct convert *convert)
 {
-    const struct import_soup *soup = convert->soup;
-    size_t points = soup->vertices_count;
-    uint32_t *parent = convert->leaf_root = ARENA_ARRAY(convert->scratch, uint32_t, points);
-    uint32_t *size = ARENA_ARRAY(convert->scratch, uint32_t, points);
-    for (size_t i = 0; i < points; i++)
-        parent[i] = (uint32_t)i, size[i] = 1;
-    for (size_t i = 0; i < soup->triangles_count; i++) {
-        if (!convert->keep[i] || !is_leaf(convert, i))
-            continue;
-        uint32_t a = root_of(parent, convert->point[soup->triangles[i][0]]);
-        for (int k = 1; k < 3; k++) {
-            uint32_t b = root_of(parent, convert->point[soup->triangles[i][k]]);
-            if (a == b)
-                continue;
-            uint32_t big = size[a] >= size[b] ? a : b, small = big == a ? b : a;
-            parent[small] = big;
-            size[big] += size[small];
-            a = big;
-        }
-    }
+    size_t count = convert->soup->triangles_count;
+    bool *leaf = ARENA_ARRAY(convert->scratch, bool, count);
+    for (size_t i = 0; i < count; i++)
+        leaf[i] = convert->keep[i] && is_leaf(convert, i);
+    convert->leaf_root = import_connect(convert->scratch, convert->soup, convert->point, leaf);
 }
 
 /* Orders the part's triangles by leaf, leaves by their first triangle; fills the part's elements.
@@ -295,7 +300,7 @@ static void order_leaves(struct convert *convert, struct mesh_part *part, uint32
     uint32_t *leaf_of = ARENA_ARRAY(convert->scratch, uint32_t, count);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t vertex = convert->soup->triangles[members[i]][0];
-        uint32_t root = root_of(convert->leaf_root, convert->point[vertex]);
+        uint32_t root = convert->leaf_root[convert->point[vertex]];
         if (leaf_number[root] == none)
             leaf_number[root] = leaves++;
         leaf_of[i] = leaf_number[root];
@@ -313,7 +318,7 @@ static void order_leaves(struct convert *convert, struct mesh_part *part, uint32
         first[i] += part->first_triangle;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t vertex = convert->soup->triangles[members[i]][0];
-        leaf_number[root_of(convert->leaf_root, convert->point[vertex])] = none;
+        leaf_number[convert->leaf_root[convert->point[vertex]]] = none;
     }
     part->element_first = first;
     part->elements_count = leaves;
@@ -323,17 +328,17 @@ static void make_parts(struct convert *convert, size_t kept)
 {
     const struct import_soup *soup = convert->soup;
     struct mesh *mesh = convert->mesh;
-    uint32_t *counts = ARENA_ARRAY(convert->scratch, uint32_t, soup->materials_count);
-    uint32_t *starts = ARENA_ARRAY(convert->scratch, uint32_t, soup->materials_count);
+    uint32_t *counts = ARENA_ARRAY(convert->scratch, uint32_t, mesh->materials_count);
+    uint32_t *starts = ARENA_ARRAY(convert->scratch, uint32_t, mesh->materials_count);
     uint32_t *leaf_number = ARENA_ARRAY(convert->scratch, uint32_t, soup->vertices_count);
     uint32_t *members = ARENA_ARRAY(convert->scratch, uint32_t, kept);
     memset(leaf_number, 0xff, soup->vertices_count * sizeof *leaf_number);
     for (size_t i = 0; i < soup->triangles_count; i++)
         counts[soup->triangle_material[i]] += convert->keep[i];
-    mesh->parts = ARENA_ARRAY(convert->arena, struct mesh_part, soup->materials_count);
+    mesh->parts = ARENA_ARRAY(convert->arena, struct mesh_part, mesh->materials_count);
     uint32_t next = 0;
     for (int kind = MATERIAL_BARK; kind <= MATERIAL_LEAF; kind++)
-        for (size_t m = 0; m < soup->materials_count; m++) {
+        for (size_t m = 0; m < mesh->materials_count; m++) {
             if ((int)mesh->materials[m].kind != kind || counts[m] == 0)
                 continue;
             mesh->parts[mesh->parts_count++] =
@@ -461,6 +466,8 @@ enum status import_convert(struct arena *arena, const struct import_request *req
         turn_soup(soup);
     weld(&convert);
     status = drop_degenerate(&convert, &kept);
+    if (status == STATUS_OK && !convert.has_leaves && !request->leaf)
+        classify_by_shape(&convert);
     if (status == STATUS_OK)
         status = place_soup(&convert);
     if (status == STATUS_OK) {

@@ -28,6 +28,15 @@ enum status import_convert(struct arena *arena, const struct import_request *req
                            struct import_soup *soup, const struct texture *const *textures,
                            const bool *has_holes, struct mesh **mesh, struct error *error);
 
+/* Of each point, the number of its connected piece: triangles of which take is true connect the
+ * points of their vertices. Union by size, path halving: Tarjan 1975, doi:10.1145/321879.321884. */
+uint32_t *import_connect(struct arena *arena, const struct import_soup *soup, const uint32_t *point,
+                         const bool *take);
+
+/* Of each triangle: does it belong to a connected piece that is flat and open, as a leaf is? */
+bool *import_flat(struct arena *arena, const struct import_soup *soup, const uint32_t *point,
+                  const bool *keep);
+
 /* A mesh as bytes for the disk cache; decoding uses the bytes in place and returns NULL when they
  * are not whole. */
 void *import_encode(struct arena *arena, const struct mesh *mesh, size_t *size);

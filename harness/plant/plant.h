@@ -20,8 +20,10 @@ enum status plant_generated(struct arena *arena, const char *generator, const ch
 struct plant_import {
     double height_m;  /* 0: keep the file's units as metres; else scale to this height */
     bool z_up;        /* the file's up axis is +z */
-    const char *leaf; /* comma-separated name parts of materials that are leaves; NULL: guess by
-                         name (leaf, leaves, foliage, needle, feuille) or by a texture with alpha */
+    const char *leaf; /* comma-separated name parts of materials that are leaves; "": none; NULL:
+                         guess by name (leaf, leaves, foliage, needle, feuille), by a texture with
+                         alpha, or, where neither finds any, by shape: connected pieces that are
+                         flat and open (|vector area| > area / 2) */
     const float *leaf_albedo,
         *bark_albedo; /* 3 floats; NULL: the file's material or vertex colour */
 };
