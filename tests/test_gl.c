@@ -501,6 +501,13 @@ static void test_gl__a_target_of_no_size_or_too_many_samples_is_refused(void **s
                          STATUS_INVALID);
         assert_non_null(strstr(error->text, "samples: "));
         assert_int_equal(gl_target(gl, 1, 1, TARGET_RGBA8, &target, error), STATUS_OK);
+        /* 8192 x 4096 x 4 samples x 16 bytes; llvmpipe allows 1 GiB. */
+        target = (struct target){.width_px = 8192, .height_px = 4096, .format = TARGET_RGBA32F};
+        if (gl->software) {
+            assert_int_equal(gl_target_multisample(gl, &target, 4, &twin, error), STATUS_GL);
+            assert_non_null(strstr(error->text, "8192 x 4096 px of rgba32f with 4 samples (2048 "));
+            assert_non_null(strstr(error->text, "; allowed: fewer pixels, fewer samples, or "));
+        }
     }
     free(rig);
 }

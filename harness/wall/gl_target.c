@@ -2,12 +2,15 @@
  * back. */
 #include "wall/gl.h"
 
+#include "base/plural.h"
+
 #include <string.h>
 
 static const struct {
     const char *word;
     GLenum internal_format;
-} formats[] = {{"rgba8", GL_RGBA8}, {"rgba16f", GL_RGBA16F}, {"rgba32f", GL_RGBA32F}};
+    double bytes; /* a pixel */
+} formats[] = {{"rgba8", GL_RGBA8, 4}, {"rgba16f", GL_RGBA16F, 8}, {"rgba32f", GL_RGBA32F, 16}};
 
 const char *target_format_word(enum target_format format)
 {
@@ -29,17 +32,25 @@ GLenum target_format_gl(enum target_format format)
     return formats[format].internal_format;
 }
 
-/* Frames a colour and a depth texture; STATUS_GL when the driver refuses the pair. */
-static enum status frame_textures(struct gl *gl, struct target *target, struct error *error)
+/* Frames a colour and a depth texture; STATUS_GL when the driver refuses the pair: llvmpipe does
+ * where a texture takes more than 1 GiB. */
+static enum status frame_textures(struct gl *gl, struct target *target, int samples,
+                                  struct error *error)
 {
     target->framebuffer = gl_framebuffer(gl);
     gl->NamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->color, 0);
     gl->NamedFramebufferTexture(target->framebuffer, GL_DEPTH_ATTACHMENT, target->depth, 0);
     GLenum state = gl->CheckNamedFramebufferStatus(target->framebuffer, GL_FRAMEBUFFER);
     if (state != GL_FRAMEBUFFER_COMPLETE)
-        return error_set(error, STATUS_GL, "a %d x %d %s target is refused by %s (0x%x)",
+        return error_set(error, STATUS_GL,
+                         "target: %d x %d px of %s with %d sample%s (%.0f MiB) is too large for "
+                         "%s; allowed: fewer pixels%s%s",
                          target->width_px, target->height_px, target_format_word(target->format),
-                         gl->renderer, state);
+                         samples, plural((size_t)samples),
+                         formats[target->format].bytes * target->width_px * target->height_px *
+                             samples / 0x1p20,
+                         gl->renderer, samples > 1 ? ", fewer samples" : "",
+                         target->format == TARGET_RGBA8 ? "" : ", or fewer bits a pixel");
     return gl_check(gl, "target", error);
 }
 
@@ -63,7 +74,7 @@ enum status gl_target(struct gl *gl, int width_px, int height_px, enum target_fo
     target->color =
         gl_texture(gl, GL_TEXTURE_2D, 1, target_format_gl(format), width_px, height_px, 1);
     target->depth = gl_texture(gl, GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT32F, width_px, height_px, 1);
-    return frame_textures(gl, target, error);
+    return frame_textures(gl, target, 1, error);
 }
 
 enum status gl_target_multisample(struct gl *gl, const struct target *target, int samples,
@@ -81,7 +92,7 @@ enum status gl_target_multisample(struct gl *gl, const struct target *target, in
                                                  target->width_px, target->height_px);
     multisampled->depth = gl_texture_multisample(gl, samples, GL_DEPTH_COMPONENT32F,
                                                  target->width_px, target->height_px);
-    return frame_textures(gl, multisampled, error);
+    return frame_textures(gl, multisampled, samples, error);
 }
 
 void gl_target_resolve(struct gl *gl, const struct target *multisampled,
