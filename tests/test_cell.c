@@ -353,21 +353,6 @@ static void test_warmup__is_bounded_in_time(void **state)
     assert_true(warmup_done(seconds, 2, 4));
 }
 
-/* Last of all: OpenGL in this process would not survive a later fork. */
-static void test_cell__here_gives_the_pictures_of_a_child(void **state)
-{
-    const char *folder = *state;
-    struct arena *arena = arena_create(0);
-    struct plan *plan = plan_of(arena, "tiny/null/trees=1/size=32x24");
-    struct result child, here;
-    assert_int_equal(cell_run(arena, plan, plan->cells, 0, folder, &child), STATUS_OK);
-    assert_int_equal(cell_run_here(arena, plan, plan->cells, 0, folder, &here), STATUS_OK);
-    assert_int_equal(child.views_count, here.views_count);
-    for (size_t i = 0; i < here.views_count; i++)
-        assert_true(child.views[i].picture_hash == here.views[i].picture_hash);
-    arena_destroy(arena);
-}
-
 #define cmocka_unit_test_in_folder(test)                                                           \
     cmocka_unit_test_setup_teardown(test, folder_setup, folder_teardown)
 
@@ -389,7 +374,6 @@ int main(void)
         cmocka_unit_test(test_cell__a_plugin_of_another_abi_is_refused),
         cmocka_unit_test_in_folder(test_cell__an_interrupt_stops_it_at_once),
         cmocka_unit_test_in_folder(test_cell__the_budget_counts_only_the_methods_memory),
-        cmocka_unit_test_in_folder(test_cell__here_gives_the_pictures_of_a_child),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

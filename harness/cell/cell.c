@@ -62,12 +62,6 @@ static enum status repetition_run(struct arena *arena, const struct plan *plan,
     return result->status;
 }
 
-enum status cell_run_here(struct arena *arena, const struct plan *plan, const struct cell *cell,
-                          int repetition, const char *folder, struct result *result)
-{
-    return repetition_run(arena, plan, cell, repetition, folder, -1, result);
-}
-
 struct order {
     const struct plan *plan;
     const struct cell *cell;

@@ -12,10 +12,6 @@
 enum status cell_run(struct arena *arena, const struct plan *plan, const struct cell *cell,
                      int repetition, const char *folder, struct result *result);
 
-/* The same in this process, without fork (render, debuggers, tests). */
-enum status cell_run_here(struct arena *arena, const struct plan *plan, const struct cell *cell,
-                          int repetition, const char *folder, struct result *result);
-
 /* One picture of a cell at a time along its path or from a given view (`render`). view may be NULL.
  */
 enum status cell_render(struct arena *arena, const struct cell *cell, double time,

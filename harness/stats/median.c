@@ -54,21 +54,6 @@ double stats_median(const double *values, size_t count)
     return stats_quantile(values, count, 0.5);
 }
 
-double stats_mad(const double *values, size_t count)
-{
-    double median = stats_median(values, count);
-    if (isnan(median))
-        return NAN;
-    double *away = malloc(count * sizeof *away);
-    if (!away)
-        return NAN;
-    for (size_t i = 0; i < count; i++)
-        away[i] = fabs(values[i] - median);
-    double mad = 1.4826 * stats_median(away, count);
-    free(away);
-    return mad;
-}
-
 double stats_geometric_mean(const double *values, size_t count)
 {
     double sum = 0;

@@ -1,4 +1,4 @@
-/* Robust summaries with intervals, tests, fits. Pure functions of arrays; seeded where they
+/* Robust summaries with intervals, and fits. Pure functions of arrays; seeded where they
  * resample. */
 #ifndef TREELINE_STATS_STATS_H
 #define TREELINE_STATS_STATS_H
@@ -16,7 +16,6 @@ struct interval {
 /* Sample median (mean of the middle two); NaN for n = 0. values is not changed. */
 double stats_median(const double *values, size_t count);
 double stats_quantile(const double *values, size_t count, double q); /* Hyndman-Fan type 7 */
-double stats_mad(const double *values, size_t count); /* median absolute deviation, x 1.4826 */
 
 /* Median with a bias-corrected accelerated bootstrap interval (Efron 1987), seeded. count < 3: low
  * = min, high = max. */
@@ -28,12 +27,6 @@ struct interval stats_nested_median_interval(const double *const *values, const 
 struct interval stats_ratio_interval(const double *a, const double *b, size_t count, uint64_t seed);
 
 double stats_geometric_mean(const double *values, size_t count); /* of positive values */
-
-/* Exact two-sided p of Wilcoxon's signed-rank test on log ratios, zeros dropped, midranks; exact
- * for n <= 50, normal with continuity correction beyond. */
-double stats_signed_rank_p(const double *differences, size_t count);
-/* Benjamini-Hochberg adjusted p (q values), in place. */
-void stats_benjamini_hochberg(double *p, size_t count);
 
 /* y = a x^b by least squares of logs; interval of b by Student's t. */
 struct power_law {
