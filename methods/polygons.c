@@ -170,6 +170,7 @@ static enum status prepare_kind(struct workspace *workspace, struct state *state
 static enum status prepare_programs(struct workspace *workspace, struct state *state)
 {
     bool wanted[VARIANTS] = {false};
+    bool fog = workspace->effects & EFFECT_FOG && state->scene->fog.density_per_m > 0;
     for (size_t k = 0; k < state->kinds_count; k++) {
         for (size_t b = 0; b < state->kinds[k].gpu.batches_count; b++)
             wanted[batch_variant(&state->kinds[k].gpu.batches[b])] = true;
@@ -180,9 +181,9 @@ static enum status prepare_programs(struct workspace *workspace, struct state *s
     for (int v = 0; v < VARIANTS; v++) {
         if (!wanted[v])
             continue;
-        const char *defines =
-            arena_printf(workspace->arena, "SPECIES %d\n%s",
-                         state->kinds_count ? (int)state->kinds_count : 1, variant_defines[v]);
+        const char *defines = arena_printf(workspace->arena, "SPECIES %d\n%s%s",
+                                           state->kinds_count ? (int)state->kinds_count : 1,
+                                           fog ? "FOG 1\n" : "", variant_defines[v]);
         enum status status = gl_program(workspace->gl, "polygons", polygons_glsl, defines,
                                         &state->programs[v], workspace->error);
         if (status != STATUS_OK)
@@ -318,19 +319,20 @@ static struct plant_gl_placed place_tree(const struct state *state, const struct
                                          float per_m)
 {
     uint32_t place = group - kind->first_group;
-    struct plant_gl_placed placed = {.turn = {instance->scale * cosf(instance->rotation_rad),
-                                              instance->scale * sinf(instance->rotation_rad), 0,
-                                              1}};
-    memcpy(placed.place, instance->position_m, sizeof instance->position_m);
+    struct plant_gl_placed placed = {
+        .scale = instance->scale,
+        .turn = {cosf(instance->rotation_rad), sinf(instance->rotation_rad)},
+    };
+    memcpy(placed.foot_m, instance->position_m, sizeof instance->position_m);
     if (place < kind->levels.levels_count)
         return placed;
     place -= (uint32_t)kind->levels.levels_count;
     int step = (int)(place / LEVELS_RUNS);
     struct levels_run run =
         levels_run_of(&kind->levels, step, per_m, state->options->smooth, taper_of(state));
-    placed.place[3] = (float)levels_begin(&kind->levels, place % LEVELS_RUNS);
-    placed.turn[2] = run.kept;
-    placed.turn[3] = run.growth;
+    placed.kept = run.kept;
+    placed.growth = run.growth;
+    placed.begin = (float)levels_begin(&kind->levels, place % LEVELS_RUNS);
     placed.stout = ((float)kind->levels.step_stout[step] - 0.5f) / 65535;
     return placed;
 }

@@ -1,8 +1,13 @@
 // Triangles of plants, instanced. Variants:
 // PRUNED: the elements of a far tree; they grow as they get fewer, and shrink away at the end of the run.
 // SIFTED: triangles of any tree, in the world already.
-// TEXTURED: alpha-tested. LEAF: leaf shading, else bark. LIT_AT_VERTICES: flat triangles, shaded before they are
-// rasterised.
+// TEXTURED: alpha-tested. LEAF: leaf shading, else bark. LIT_AT_VERTICES: flat triangles of one colour, shaded before
+// they are rasterised. FOG: with fog.
+#ifdef FOG
+#define RADIANCE centroid
+#else
+#define RADIANCE flat
+#endif
 #pragma stage vertex
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, 0 bark; SIFTED: (2 species + leaf) / 32767
@@ -12,21 +17,24 @@ layout(location = 3) in vec2 uv;
 sample out vec2 texture_uv;
 #endif
 #ifndef SIFTED
-layout(location = 5) in vec4 place;  // foot, m; first element of the run
-layout(location = 6) in vec4 turn;   // scale cos, scale sin; elements of the run, their growth
+layout(location = 5) in vec4 place;  // foot, m; scale
+layout(location = 6) in vec4 turn;   // cosine, sine; elements of the run, their growth
 #endif
+// A rasteriser of small triangles spends much of its time on setting up what is interpolated: as little as may be.
 #ifdef LIT_AT_VERTICES
-centroid out vec3 radiance;
+RADIANCE out vec3 radiance;
 #else
-centroid out vec3 position_m;
 centroid out vec3 shading_normal;
 centroid out vec3 surface_albedo;
+#ifdef FOG
+centroid out vec3 position_m;
+#endif
 #endif
 #ifdef PRUNED
 layout(location = 4) in vec3 center;
-layout(location = 7) in float stout;
-uniform float elements;  // of the plant
-uniform float taper;     // share of the run that is shrinking
+layout(location = 7) in vec2 run;  // its first element; the width from which on bark is drawn whole
+uniform float elements;            // of the plant
+uniform float taper;               // share of the run that is shrinking
 #endif
 #ifdef SIFTED
 uniform vec3 mean[2 * SPECIES];  // bark and leaves of each species, lit, over the plant
@@ -39,12 +47,12 @@ void main()
 {
     vec3 local = position;
 #ifdef PRUNED
-    float rank = float(gl_VertexID / 3) - place.w;
+    float rank = float(gl_VertexID / 3) - run.x;
     rank += rank < 0.0 ? elements : 0.0;
     float keep = taper > 0.0 ? clamp((turn.z - rank - 0.5) / (taper * turn.z), 0.0, 1.0) : 1.0;
     bool leaf = normal.w > 0.5;
     float grow = turn.w;
-    keep = leaf || albedo.w < stout ? keep : 0.0;  // wide bark is drawn whole
+    keep = leaf || albedo.w < run.y ? keep : 0.0;
     local = center + (position - center) * (grow * keep);
 #elif defined(SIFTED)
     int owner = int(round(normal.w * 32767.0));
@@ -58,10 +66,8 @@ void main()
     vec3 world = position;
     vec3 n = normal.xyz;
 #else
-    float scale = length(turn.xy);
-    vec2 way = turn.xy / scale;
-    vec3 world = place.xyz + scale * rotate_y(local, way.x, way.y);
-    vec3 n = rotate_y(normal.xyz, way.x, way.y);
+    vec3 world = place.xyz + place.w * rotate_y(local, turn.x, turn.y);
+    vec3 n = rotate_y(normal.xyz, turn.x, turn.y);
 #endif
 #ifdef LIT_AT_VERTICES
     bool facing = dot(n, eye_m - world) >= 0.0;  // the same at every point of a flat triangle
@@ -74,11 +80,16 @@ void main()
     if (level_contrast && albedo.w < 1.0)
         lit = mix(mean[owner], lit, albedo.w);
 #endif
+    radiance = lit;
+#ifdef FOG
     radiance = shade_fog(lit, world);
+#endif
 #else
-    position_m = world;
     shading_normal = n;
     surface_albedo = albedo.rgb;
+#ifdef FOG
+    position_m = world;
+#endif
 #endif
 #ifdef TEXTURED
     texture_uv = uv;
@@ -89,16 +100,18 @@ void main()
 #pragma stage fragment
 layout(location = 0) out vec4 color;
 #if defined(LIT_AT_VERTICES)
-centroid in vec3 radiance;
+RADIANCE in vec3 radiance;
 
 void main()
 {
     color = vec4(radiance, 1.0);
 }
 #else
-centroid in vec3 position_m;
 centroid in vec3 shading_normal;
 centroid in vec3 surface_albedo;
+#ifdef FOG
+centroid in vec3 position_m;
+#endif
 #ifdef TEXTURED
 sample in vec2 texture_uv;  // each sample of a pixel tests its own texel
 layout(binding = 0) uniform sampler2D picture;
@@ -118,6 +131,9 @@ void main()
 #else
     vec3 lit = shade_bark(a, shading_normal, gl_FrontFacing);
 #endif
-    color = vec4(shade_fog(lit, position_m), 1.0);
+#ifdef FOG
+    lit = shade_fog(lit, position_m);
+#endif
+    color = vec4(lit, 1.0);
 }
 #endif

@@ -88,6 +88,9 @@ static bool triangle_is_flat(const struct mesh *mesh, const uint32_t *corners)
         const float *m = mesh->normals[corners[i]];
         if (n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < 0.99999f * length)
             return false;
+        if (mesh->colors &&
+            memcmp(mesh->colors[corners[0]], mesh->colors[corners[i]], sizeof *mesh->colors) != 0)
+            return false;
     }
     return true;
 }

@@ -22,7 +22,8 @@ struct detail_range {
 struct detail_batch {
     enum material_kind kind;
     const struct texture *texture; /* NULL: none */
-    bool flat;   /* every triangle's normals are its geometric normal: may be lit at its vertices */
+    bool flat;   /* every triangle has one colour, its normals are the geometric one: it may be lit
+                    at any vertex */
     bool closed; /* a closed surface that faces outward: its back faces are never seen */
     struct detail_range levels[DETAIL_LEVELS_MAX]; /* bark: from wide to thin */
 };

@@ -24,9 +24,8 @@ static GLuint vertex_array(struct gl *gl, GLuint vertices, GLsizei stride, size_
     attribute(gl, array, 0, 0, 3, GL_FLOAT, 0);
     attribute(gl, array, 1, 0, 4, GL_SHORT, normal_offset);
     attribute(gl, array, 2, 0, 4, GL_UNSIGNED_SHORT, albedo_offset);
-    attribute(gl, array, 5, 2, 4, GL_FLOAT, offsetof(struct plant_gl_placed, place));
+    attribute(gl, array, 5, 2, 4, GL_FLOAT, offsetof(struct plant_gl_placed, foot_m));
     attribute(gl, array, 6, 2, 4, GL_FLOAT, offsetof(struct plant_gl_placed, turn));
-    attribute(gl, array, 7, 2, 1, GL_FLOAT, offsetof(struct plant_gl_placed, stout));
     return array;
 }
 
@@ -92,5 +91,6 @@ void plant_gl_pruned(struct workspace *workspace, const struct prune *prune, GLu
         vertex_array(gl, vertices, sizeof *prune->vertices, offsetof(struct prune_vertex, normal),
                      offsetof(struct prune_vertex, albedo), elements, placed);
     attribute(gl, plant->pruned, 4, 0, 3, GL_FLOAT, offsetof(struct prune_vertex, center_m));
+    attribute(gl, plant->pruned, 7, 2, 2, GL_FLOAT, offsetof(struct plant_gl_placed, begin));
     arena_destroy(passing);
 }

@@ -7,11 +7,12 @@
 #include "bake/prune.h"
 #include "method/method.h"
 
-/* The instanced attributes: foot (m) and first element of the run; scale cos, scale sin, elements
- * of the run, their growth; the width from which on bark is left out of the run (as stout.h packs
- * it, unorm). */
+/* The instanced attributes: place, turn (of the run of pruned elements: how many, their growth) and
+ * run (the first element; the width from which on bark is left out, as stout.h packs it, unorm). */
 struct plant_gl_placed {
-    float place[4], turn[4], stout;
+    float foot_m[3], scale;
+    float turn[2], kept, growth; /* cosine, sine */
+    float begin, stout;
 };
 
 struct plant_gl_batch {
@@ -23,7 +24,7 @@ struct plant_gl_batch {
 };
 
 /* Attributes 0 position, 1 normal, 2 albedo, 3 texture coordinates, 4 an element's centre, 5 place,
- * 6 turn, 7 stout. */
+ * 6 turn, 7 run. */
 struct plant_gl {
     GLuint detail, pruned; /* vertex arrays; pruned 0: none */
     size_t batches_count;
