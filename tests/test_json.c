@@ -2,6 +2,7 @@
 #include "testing.h"
 
 #include "wall/json.h"
+#include "wall/json_text.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -101,8 +102,21 @@ static void test_json__broken_text_names_the_line(void **unused)
     struct error error = {0};
     assert_int_equal(load("{\n\"trees\": 1,\n oops }", &error), STATUS_INVALID);
     assert_memory_equal(error.text, "f.json:3: not JSON near '", 25);
-    assert_int_equal(load("", &error), STATUS_INVALID);
-    assert_int_equal(load("{} trailing", &error), STATUS_INVALID);
+    static const struct {
+        const char *text, *says;
+    } cases[] = {
+        {"", "f.json: is empty"},
+        {" \r\n", "f.json: is empty"},
+        {"{} trailing", "f.json:1: not JSON near 'trailing'"},
+        {"{\n\"doc\": \"caf\xe9\"}", "f.json:2: not JSON: a byte that is not UTF-8"},
+        {"{\"doc\": \"\\\xe9\"}", "f.json:1: not JSON: a byte that is not UTF-8"},
+        {"{\"doc\": \"a\\u0000b\"}", "f.json:1: a text holds \\u0000"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_int_equal(load(cases[i].text, &error), STATUS_INVALID);
+        if (strncmp(error.text, cases[i].says, strlen(cases[i].says)) != 0)
+            fail_msg("'%s' does not begin with '%s'", error.text, cases[i].says);
+    }
 }
 
 static void test_json__deep_nesting_is_refused(void **unused)
@@ -119,7 +133,33 @@ static void test_json__deep_nesting_is_refused(void **unused)
     char *abyss = calloc(1, 100001);
     memset(abyss, '[', 100000);
     assert_int_equal(load(abyss, &error), STATUS_INVALID);
+    assert_string_equal(error.text, "f.json:1: is nested deeper than 64 levels");
     free(abyss);
+    struct json_doc *doc =
+        json_parse(arena, "{\"a\": \"[[\\\"{{{\", \"b\": [[]]}", "f.json", &error);
+    assert_non_null(doc); /* brackets in a text nest nothing */
+    assert_string_equal(json_text(json_root(doc), "a", ""), "[[\"{{{");
+}
+
+/* Every scalar value has one encoding, and nothing else is taken: their number says so. */
+static void test_json__utf8_is_what_rfc_3629_says(void **unused)
+{
+    (void)unused;
+    size_t taken[5] = {0};
+    for (unsigned first = 1; first < 256; first++)
+        for (unsigned second = 1; second < 256; second++)
+            for (unsigned third = 1; third < 256; third++) {
+                char text[5] = {(char)first, (char)second, (char)third, (char)0xbf, 0};
+                size_t length = utf8_length(text);
+                assert_true(length <= 4);
+                taken[length] += length == 3 || length == 4 || third == 1;
+            }
+    assert_int_equal(taken[1], 127 * 255);               /* any byte may follow */
+    assert_int_equal(taken[2], 0x800 - 0x80);            /* U+0080.. */
+    assert_int_equal(taken[3], 0x10000 - 0x800 - 0x800); /* U+0800.. without surrogates */
+    assert_int_equal(taken[4], 0x100000 / 64);           /* U+10000.., of one last byte */
+    assert_int_equal(utf8_length("\xe2\x82"), 0);
+    assert_int_equal(utf8_length("\xf0\x9f\x8c"), 0);
 }
 
 static void test_json_out__everything_written_is_read_back(void **unused)
@@ -134,6 +174,7 @@ static void test_json_out__everything_written_is_read_back(void **unused)
     json_close(out);
     json_put_number(out, "nan", NAN);
     json_put_text(out, "text", "a \"b\" \\ \n\t\x01 \xc3\xa9");
+    json_put_text(out, "latin", "caf\xe9!");
     json_put_text(out, "none", NULL);
     json_put_bool(out, "yes", true);
     json_put_u64(out, "hash", 0xfedcba9876543210u);
@@ -152,6 +193,7 @@ static void test_json_out__everything_written_is_read_back(void **unused)
     assert_true(isnan(numbers[0] * NAN));
     assert_true(json_number(root, "nan", 7, 0, 10) == 7);
     assert_string_equal(json_text(root, "text", ""), "a \"b\" \\ \n\t\x01 \xc3\xa9");
+    assert_string_equal(json_text(root, "latin", ""), "caf\xef\xbf\xbd!");
     assert_null(json_text(root, "none", NULL));
     assert_true(json_bool(root, "yes", false));
     assert_true(json_u64(root, "hash") == 0xfedcba9876543210u);
@@ -166,6 +208,7 @@ int main(void)
         cmocka_unit_test(test_json__errors_name_file_place_value_and_allowance),
         cmocka_unit_test(test_json__broken_text_names_the_line),
         cmocka_unit_test(test_json__deep_nesting_is_refused),
+        cmocka_unit_test(test_json__utf8_is_what_rfc_3629_says),
         cmocka_unit_test(test_json_out__everything_written_is_read_back),
     };
     return cmocka_run_group_tests(tests, start, finish);

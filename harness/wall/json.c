@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/nearest.h"
+#include "wall/json_text.h"
 
 #include <cjson/cJSON.h>
 #include <inttypes.h>
@@ -13,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NESTING_MAX = 64, FILE_BYTES_MAX = 16 << 20 };
+enum { FILE_BYTES_MAX = 16 << 20 };
 
 enum json_type { JSON_NULL, JSON_BOOL, JSON_NUMBER, JSON_TEXT, JSON_ARRAY, JSON_OBJECT };
 static const char *const type_words[] = {"null",   "true or false", "a number",
@@ -83,15 +84,11 @@ enum status json_fail(struct json *object, const char *key, const char *format, 
     return fail(object->doc, object, key, text);
 }
 
-static void convert(struct json *node, const cJSON *item, int depth);
+static void convert(struct json *node, const cJSON *item);
 
-static void convert_children(struct json *node, const cJSON *item, int depth)
+static void convert_children(struct json *node, const cJSON *item)
 {
     struct json_doc *doc = node->doc;
-    if (depth > NESTING_MAX) {
-        fail(doc, node, NULL, "is nested deeper than 64 levels");
-        return;
-    }
     for (const cJSON *child = item->child; child; child = child->next)
         node->children_count++;
     node->children = ARENA_ARRAY(doc->arena, struct json, node->children_count);
@@ -104,11 +101,11 @@ static void convert_children(struct json *node, const cJSON *item, int depth)
         for (size_t i = 0; i < index && to->key && node->children_count <= 4096; i++)
             if (node->children[i].key && strcmp(node->children[i].key, to->key) == 0)
                 fail(doc, to, NULL, "stands here twice");
-        convert(to, child, depth + 1);
+        convert(to, child);
     }
 }
 
-static void convert(struct json *node, const cJSON *item, int depth)
+static void convert(struct json *node, const cJSON *item)
 {
     if (cJSON_IsBool(item)) {
         node->type = JSON_BOOL;
@@ -123,7 +120,7 @@ static void convert(struct json *node, const cJSON *item, int depth)
         node->text = arena_strdup(node->doc->arena, item->valuestring);
     } else if (cJSON_IsArray(item) || cJSON_IsObject(item)) {
         node->type = cJSON_IsArray(item) ? JSON_ARRAY : JSON_OBJECT;
-        convert_children(node, item, depth);
+        convert_children(node, item);
     }
 }
 
@@ -133,6 +130,8 @@ struct json_doc *json_parse(struct arena *arena, const char *text, const char *w
     struct json_doc *doc = ARENA_NEW(arena, struct json_doc);
     *doc = (struct json_doc){.arena = arena, .where = arena_strdup(arena, where), .error = error};
     doc->root.doc = doc;
+    if (json_text_check(text, where, error) != STATUS_OK)
+        return NULL;
     const char *end = text;
     cJSON *item = cJSON_ParseWithOpts(text, &end, true);
     if (!item) {
@@ -142,7 +141,7 @@ struct json_doc *json_parse(struct arena *arena, const char *text, const char *w
         error_set(error, STATUS_INVALID, "%s:%d: not JSON near '%.24s'", where, line, end);
         return NULL;
     }
-    convert(&doc->root, item, 1);
+    convert(&doc->root, item);
     cJSON_Delete(item);
     return doc->status == STATUS_OK ? doc : NULL;
 }

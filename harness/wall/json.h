@@ -23,7 +23,8 @@ struct json_doc;
 struct json;
 
 /* STATUS_NOT_FOUND, STATUS_IO, or STATUS_INVALID "FILE:LINE: not JSON near '...'". Files above 16
- * MiB, nesting above 64, duplicate keys and NaN are refused. error must outlive the document. */
+ * MiB, what json_text_check refuses, duplicate keys and NaN are refused. error must outlive the
+ * document. */
 struct json_doc *json_load(struct arena *arena, const char *path, struct error *error);
 /* The same from text; where stands for the file's name in errors. */
 struct json_doc *json_parse(struct arena *arena, const char *text, const char *where,

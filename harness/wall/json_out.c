@@ -1,6 +1,8 @@
-/* JSON writing: a growing text in an arena. Strings are escaped by cJSON's rules; doubles read back
- * exactly. */
+/* JSON writing: a growing text in an arena. Strings are escaped by cJSON's rules, bytes that
+ * are not UTF-8 become U+FFFD; doubles read back exactly. */
 #include "wall/json.h"
+
+#include "wall/json_text.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -44,18 +46,22 @@ static void put(struct json_out *out, const char *text, size_t length)
 static void put_string(struct json_out *out, const char *text)
 {
     put(out, "\"", 1);
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+    size_t step;
+    for (const char *c = text; *c; c += step) {
         char escape[8];
-        if (*c == '"' || *c == '\\')
-            put(out, (char[]){'\\', (char)*c}, 2);
+        step = utf8_length(c);
+        if (step == 0)
+            put(out, "\xef\xbf\xbd", 3), step = 1; /* U+FFFD */
+        else if (*c == '"' || *c == '\\')
+            put(out, (char[]){'\\', *c}, 2);
         else if (*c == '\n')
             put(out, "\\n", 2);
         else if (*c == '\t')
             put(out, "\\t", 2);
-        else if (*c < 0x20)
-            put(out, escape, (size_t)snprintf(escape, sizeof escape, "\\u%04x", *c));
+        else if ((unsigned char)*c < 0x20)
+            put(out, escape, (size_t)snprintf(escape, sizeof escape, "\\u%04x", (unsigned)*c));
         else
-            put(out, (const char *)c, 1);
+            put(out, c, step);
     }
     put(out, "\"", 1);
 }
