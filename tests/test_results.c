@@ -297,6 +297,34 @@ static void test_run__cut_anywhere_loses_at_most_the_last_line(void **state)
     arena_destroy(arena);
 }
 
+static void test_run__what_is_no_run_is_refused_and_left_as_it_is(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "a thesis without an end",
+        "two lines\nof a thesis",
+        "{\"version\":2,\"kind\":\"treeline-run\"",
+        "{\"version\":2,\"kind\":\"treeline-run\"}\n{\"version\":2,\"cell\":\"cut",
+    };
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    struct provenance provenance = somewhere();
+    const char *folder = folder_new(arena);
+    const char *file = arena_printf(arena, "%s/cells.jsonl", folder);
+    for (size_t i = 0; i < 2 * sizeof texts / sizeof *texts; i++) {
+        const char *text = texts[i / 2];
+        char *after;
+        size_t size;
+        assert_int_equal(file_write(file, text, strlen(text), &error), STATUS_OK);
+        assert_int_equal(run_open(folder, &provenance, i % 2, &error), STATUS_INVALID);
+        assert_non_null(strstr(error.text, file));
+        assert_int_equal(file_read(arena, file, 0, &after, &size, &error), STATUS_OK);
+        assert_string_equal(after, text);
+    }
+    folder_remove(arena, folder);
+    arena_destroy(arena);
+}
+
 static void bad_file(const char *text, const char *word, const char *other)
 {
     struct arena *arena = arena_create(0);
@@ -329,7 +357,7 @@ static void test_run__a_malformed_line_is_named_by_its_number(void **state)
     bad_file(arena_printf(arena, "%s\n{\"version\":2}\n", first), "cells.jsonl:2", "version 1");
     bad_file("{\"version\":2,\"kind\":\"treeline-run\"}\n", "cells.jsonl:1", "version 1");
     bad_file("{\"version\":1}\n", "cells.jsonl:1", "treeline-run");
-    bad_file("", "is empty", "provenance");
+    bad_file("", "no whole line", "provenance");
     char *unknown = arena_printf(arena, "{\"more\":1,%s", good + 1);
     bad_file(arena_printf(arena, "%s\n%s\n", first, unknown), "cells.jsonl:2", "more");
     char *status = strstr(good, "\"status\":\"");
@@ -503,6 +531,7 @@ int main(void)
         cmocka_unit_test(test_result__a_line_reads_back_to_the_same_values),
         cmocka_unit_test(test_run__reads_back_what_was_appended),
         cmocka_unit_test(test_run__cut_anywhere_loses_at_most_the_last_line),
+        cmocka_unit_test(test_run__what_is_no_run_is_refused_and_left_as_it_is),
         cmocka_unit_test(test_run__a_malformed_line_is_named_by_its_number),
         cmocka_unit_test(test_run__a_folder_with_a_run_is_refused_unless_resumed),
         cmocka_unit_test(test_run__the_lock_admits_one_process_and_ends_with_it),

@@ -107,8 +107,8 @@ static enum status lines_read(struct arena *arena, const char *file, char *text,
         run->results_count += number > 1;
     }
     if (!number || (number == 1 && run->torn_lines))
-        return error_set(error, STATUS_INVALID, "%s: is empty; a run begins with its provenance",
-                         file);
+        return error_set(error, STATUS_INVALID,
+                         "%s: holds no whole line; a run begins with its provenance", file);
     return STATUS_OK;
 }
 
@@ -187,6 +187,20 @@ static enum status plan_check(struct arena *arena, const char *folder,
     return STATUS_OK;
 }
 
+/* A first line that an end cut short, and nothing behind it: as good as no file. */
+static bool first_line_is_torn(const char *file)
+{
+    char begun[64], bytes[8192];
+    int length =
+        snprintf(begun, sizeof begun, "{\"version\":%d,\"kind\":\"treeline-run\"", RESULT_VERSION);
+    FILE *opened = fopen(file, "rbe");
+    size_t size = opened ? fread(bytes, 1, sizeof bytes, opened) : 0;
+    if (opened)
+        fclose(opened);
+    size_t same = size < (size_t)length ? size : (size_t)length;
+    return size < sizeof bytes && !memchr(bytes, '\n', size) && memcmp(bytes, begun, same) == 0;
+}
+
 enum status run_open(const char *folder, const struct provenance *provenance, bool resume,
                      struct error *error)
 {
@@ -196,14 +210,14 @@ enum status run_open(const char *folder, const struct provenance *provenance, bo
     struct arena *arena = arena_create(0);
     const char *file = arena_printf(arena, "%s/cells.jsonl", folder);
     struct stat info;
-    bool there = !stat(file, &info);
-    if (there)
-        status = torn_line_cut(file, error);
-    if (!status && there && !stat(file, &info) && !info.st_size)
-        there = false;
-    if (!status && there) {
+    bool there = !stat(file, &info),
+         begun = there && !(S_ISREG(info.st_mode) && first_line_is_torn(file));
+    /* Nothing is cut before it is known to be a run that may go on. */
+    if (begun)
         status = plan_check(arena, folder, provenance, resume, error);
-    } else if (!status) {
+    if (!status && there)
+        status = torn_line_cut(file, error);
+    if (!status && !begun) {
         const char *line = arena_printf(arena, "%s\n", provenance_to_json(arena, provenance));
         status = file_append(file, line, strlen(line), error);
     }
