@@ -1,12 +1,17 @@
 /* Methods by name, and plugins by the path of their shared object. */
+#include "base/child.h"
 #include "base/nearest.h"
 #include "method/method.h"
 
 #include <dlfcn.h>
-#include <limits.h>
+#include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 /* "dir/cross-quads.so" -> "cross_quads_method" */
 static bool symbol_name(const char *path, char *symbol, size_t size)
@@ -22,6 +27,42 @@ static bool symbol_name(const char *path, char *symbol, size_t size)
     return length > 0;
 }
 
+enum { LOAD_SECONDS = 20 };
+
+/* Loads the file in a child first: a cut or damaged one crashes the dynamic loader, a pipe keeps it
+ * waiting, and what its constructors do is theirs. A file that is loaded already is not tried
+ * again. */
+static enum status load_try(const char *path, const char *real, struct error *error)
+{
+    struct stat info;
+    if (stat(real, &info) != 0 || !S_ISREG(info.st_mode))
+        return error_set(error, STATUS_INVALID, "plugin %s: is not a regular file", path);
+    void *loaded = dlopen(real, RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+    if (loaded)
+        return dlclose(loaded), STATUS_OK;
+    int state = 0;
+    fflush(NULL);
+    pid_t child = fork();
+    if (child == 0) {
+        child_begin(LOAD_SECONDS);
+        dlopen(real, RTLD_NOW | RTLD_LOCAL);
+        _exit(0);
+    }
+    if (child < 0)
+        return error_errno(error, STATUS_INTERNAL, "plugin %s: cannot be tried", path);
+    while (waitpid(child, &state, 0) < 0)
+        if (errno != EINTR)
+            return error_errno(error, STATUS_INTERNAL, "plugin %s: its trial was lost", path);
+    if (WIFSIGNALED(state) && WTERMSIG(state) == SIGALRM)
+        return error_set(error, STATUS_INVALID, "plugin %s: takes more than %d s to load", path,
+                         LOAD_SECONDS);
+    if (WIFSIGNALED(state) || WEXITSTATUS(state) != 0)
+        return error_set(error, STATUS_INVALID, "plugin %s: is damaged: loading it ends in %s %d",
+                         path, WIFSIGNALED(state) ? "signal" : "exit code",
+                         WIFSIGNALED(state) ? WTERMSIG(state) : WEXITSTATUS(state));
+    return STATUS_OK;
+}
+
 static enum status method_load(const char *path, const struct method **method, struct error *error)
 {
     char symbol[128];
@@ -29,8 +70,11 @@ static enum status method_load(const char *path, const struct method **method, s
     char *real = realpath(path, NULL);
     if (!real)
         return error_errno(error, STATUS_NOT_FOUND, "plugin %s", path);
-    void *library = dlopen(real, RTLD_NOW | RTLD_LOCAL);
+    enum status status = load_try(path, real, error);
+    void *library = status == STATUS_OK ? dlopen(real, RTLD_NOW | RTLD_LOCAL) : NULL;
     free(real);
+    if (status != STATUS_OK)
+        return status;
     if (!library)
         return error_set(error, STATUS_INVALID, "plugin %s: is not a loadable method: %s", path,
                          dlerror());

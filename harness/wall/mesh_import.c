@@ -2,15 +2,13 @@
  * others, and neither may end a run. */
 #include "wall/mesh_import.h"
 
+#include "base/child.h"
 #include "wall/mesh_import_parts.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -31,22 +29,10 @@ static unsigned limit_seconds(const char *path)
     return LIMIT_SECONDS + (unsigned)(info.st_size >> 20);
 }
 
-/* Leaves without the parent's exit handlers: they belong to its GL, its threads, its tests. */
 static _Noreturn void read_in_child(const char *path, size_t triangles_limit, int file,
                                     struct answer *answer)
 {
-    const int fatal[] = {SIGALRM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM};
-    for (size_t i = 0; i < sizeof fatal / sizeof *fatal; i++)
-        signal(fatal[i], SIG_DFL);
-    sigset_t none;
-    sigemptyset(&none);
-    sigprocmask(SIG_SETMASK, &none, NULL);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-    int silence = open("/dev/null", O_WRONLY);
-    if (silence >= 0)
-        dup2(silence, STDERR_FILENO);
-    alarm(limit_seconds(path));
+    child_begin(limit_seconds(path));
     struct arena *arena = arena_create(0);
     struct import_soup *soup = NULL;
     struct error error = {0};
