@@ -78,15 +78,21 @@ const char *import_resolve(struct arena *arena, const char *path, const char *na
     return file_exists(beside) ? beside : NULL;
 }
 
-/* Chains the bytes of a file named in another one; a missing one only by its name. */
-static void hash_named(struct arena *arena, const char *path, const char *name, uint64_t *hash)
+/* Chains the bytes of a file named in another one; a missing one only by its name. What is there
+ * but is no file that can be read is refused: assimp waits for the end of a pipe. */
+static enum status hash_named(struct arena *arena, const char *path, const char *name,
+                              uint64_t *hash, struct error *error)
 {
     char *bytes;
     size_t size;
     const char *at = import_resolve(arena, path, name);
     *hash = hash_text(*hash, name);
-    if (at && file_read(arena, at, file_limit_bytes, &bytes, &size, NULL) == STATUS_OK)
-        *hash = hash_bytes(*hash, bytes, size);
+    if (!at)
+        return STATUS_OK;
+    if (file_read(arena, at, file_limit_bytes, &bytes, &size, error) != STATUS_OK)
+        return error_context(error, "%s", path);
+    *hash = hash_bytes(*hash, bytes, size);
+    return STATUS_OK;
 }
 
 /* The rest of a line behind its keyword, trimmed, or NULL when the line starts with another word.
@@ -132,10 +138,8 @@ each_line(struct arena *arena, const char *path, const char *text, size_t size, 
 static enum status take_map(struct arena *arena, const char *path, char *rest, uint64_t *hash,
                             struct error *error)
 {
-    (void)error;
     char *last = strrchr(rest, ' ');
-    hash_named(arena, path, rest[0] == '-' && last ? last + 1 : rest, hash);
-    return STATUS_OK;
+    return hash_named(arena, path, rest[0] == '-' && last ? last + 1 : rest, hash, error);
 }
 
 static enum status take_library(struct arena *arena, const char *path, char *rest, uint64_t *hash,
@@ -151,17 +155,17 @@ static enum status take_library(struct arena *arena, const char *path, char *res
     if (status != STATUS_OK)
         return status;
     *hash = hash_bytes(*hash, text, size);
-    each_line(arena, at, text, size, "map_Kd", take_map, hash, NULL);
-    each_line(arena, at, text, size, "map_d", take_map, hash, NULL);
-    return STATUS_OK;
+    status = each_line(arena, at, text, size, "map_Kd", take_map, hash, error);
+    return status ? status : each_line(arena, at, text, size, "map_d", take_map, hash, error);
 }
 
 /* Every "uri": "..." of a glTF that names a file. */
-static void hash_uris(struct arena *arena, const char *path, const char *text, size_t size,
-                      uint64_t *hash)
+static enum status hash_uris(struct arena *arena, const char *path, const char *text, size_t size,
+                             uint64_t *hash, struct error *error)
 {
+    enum status status = STATUS_OK;
     const char *end = text + size;
-    while ((text = memmem(text, (size_t)(end - text), "\"uri\"", 5))) {
+    while (!status && (text = memmem(text, (size_t)(end - text), "\"uri\"", 5))) {
         for (text += 5; text < end && (isspace((unsigned char)*text) || *text == ':');)
             text++;
         if (text == end || *text != '"')
@@ -169,8 +173,10 @@ static void hash_uris(struct arena *arena, const char *path, const char *text, s
         text++;
         const char *close = memchr(text, '"', (size_t)(end - text));
         if (close && close - text < 4096 && strncmp(text, "data:", 5) != 0)
-            hash_named(arena, path, arena_printf(arena, "%.*s", (int)(close - text), text), hash);
+            status = hash_named(arena, path, arena_printf(arena, "%.*s", (int)(close - text), text),
+                                hash, error);
     }
+    return status;
 }
 
 /* Chains the hash of a mesh file's bytes and of every file that it names: .mtl, .bin, textures. A
@@ -188,10 +194,10 @@ static enum status hash_files(const char *path, uint64_t *hash, struct error *er
         if (path_ends_with(path, ".obj"))
             status = each_line(scratch, path, text, size, "mtllib", take_library, hash, error);
         else if (path_ends_with(path, ".ply"))
-            each_line(scratch, path, text, size < 65536 ? size : 65536, "comment TextureFile",
-                      take_map, hash, NULL);
+            status = each_line(scratch, path, text, size < 65536 ? size : 65536,
+                               "comment TextureFile", take_map, hash, error);
         else
-            hash_uris(scratch, path, text, size, hash);
+            status = hash_uris(scratch, path, text, size, hash, error);
     }
     arena_destroy(scratch);
     return status;

@@ -115,6 +115,9 @@ enum status place_file(struct arena *arena, const struct description *descriptio
     struct row row = {.path = description->placement.file};
     if (file_read(arena, row.path, 0, &text, &size, error) != STATUS_OK)
         return error_context(error, "%s: placement.file", description->path);
+    if (strlen(text) != size)
+        return error_set(error, STATUS_INVALID, "%s: a NUL byte at %zu; allowed: text", row.path,
+                         strlen(text));
     /* Every row is checked, also those that are not asked for. */
     for (char *line = text; line; row.line++) {
         char *next = strchr(line, '\n');

@@ -269,6 +269,17 @@ static enum status read_scene(struct import *import, size_t triangles_limit)
     return read_node(import, scene->mRootNode, &identity);
 }
 
+/* What assimp says, where that helps; it looks for another reader when a file's head is damaged. */
+static const char *reason(void)
+{
+    const char *said = aiGetErrorString();
+    if (strstr(said, "No suitable reader"))
+        return "is damaged at its head, or not what its ending says";
+    if (strstr(said, "bad_alloc"))
+        return "is damaged: asks for more memory than there is";
+    return said;
+}
+
 enum status mesh_import_assimp(struct arena *arena, const char *path, size_t triangles_limit,
                                struct import_soup **soup, struct error *error)
 {
@@ -283,7 +294,7 @@ enum status mesh_import_assimp(struct arena *arena, const char *path, size_t tri
         path, aiProcess_Triangulate | aiProcess_SortByPType, NULL, properties);
     aiReleasePropertyStore(properties);
     if (!scene)
-        return error_set(error, STATUS_INVALID, "%s: %s", path, aiGetErrorString());
+        return error_set(error, STATUS_INVALID, "%s: %s", path, reason());
     struct import import = {.arena = arena, .path = path, .scene = scene, .error = error};
     import.soup = *soup = ARENA_NEW(arena, struct import_soup);
     import.colors_encoded = colors_encoded;

@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 extern "C" {
 #include "wall/oiio.h"
 }
@@ -124,9 +127,36 @@ int write_picture(const oiio_context *context, const char *ending, const oiio_pi
     return 0;
 }
 
+/* libpng writes to stderr what its caller is told anyway. */
+class silence
+{
+  public:
+    silence() : kept(fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0))
+    {
+        int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
+        if (kept >= 0 && nothing >= 0)
+            dup2(nothing, STDERR_FILENO);
+        if (nothing >= 0)
+            close(nothing);
+    }
+    ~silence()
+    {
+        if (kept >= 0) {
+            dup2(kept, STDERR_FILENO);
+            close(kept);
+        }
+    }
+    silence(const silence &) = delete;
+    silence &operator=(const silence &) = delete;
+
+  private:
+    int kept;
+};
+
 /* Every call behind one door: whatever is thrown becomes a message. */
 template <class Call> int guarded(const oiio_context *context, Call call)
 {
+    silence quiet;
     try {
         return call();
     } catch (const std::exception &exception) {
