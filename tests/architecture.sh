@@ -33,7 +33,7 @@ foreign xxHash 'xxhash' 'harness/base/hash\.c'
 
 # 2. Includes go down only. plant/mesh.h is plain data and may be seen from the wall.
 rank() {
-  case $1 in base) echo 0 ;; wall) echo 1 ;; stats) echo 1 ;; plant) echo 2 ;; scene) echo 3 ;; truth) echo 4 ;;
+  case $1 in base) echo 0 ;; wall) echo 1 ;; stats) echo 1 ;; plant) echo 2 ;; scene) echo 3 ;; calibrate) echo 3 ;; truth) echo 4 ;;
     method) echo 4 ;; bake) echo 5 ;; plan) echo 5 ;; results) echo 6 ;; cell) echo 7 ;; report) echo 7 ;;
     cli) echo 8 ;; *) echo 99 ;; esac
 }
