@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "results/limit.h"
 #include "results/result.h"
 
 /* One row of every table: a cell over its successful repetitions. */
@@ -13,9 +14,10 @@ struct summary {
     size_t repetitions, failures; /* that succeeded; that did not */
     struct {
         double value, low, high;
-    } frame_seconds; /* median over repetitions of each one's median, with its 95 % interval */
-    bool on_front;   /* Pareto front of frame time and FLIP (same effects) among comparable cells;
-                        never the method null, which draws no tree */
+    } frame_seconds;    /* median over repetitions of each one's median, with its 95 % interval */
+    struct limit limit; /* what bounds the frame time, and how near the limit it comes */
+    bool on_front; /* Pareto front of frame time and FLIP (same effects) among comparable cells;
+                      never the method null, which draws no tree */
 };
 /* In the order in which the cells first occur in the run. */
 struct summary *report_summaries(struct arena *arena, const struct run *run, size_t *count);

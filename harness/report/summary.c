@@ -66,6 +66,7 @@ static void summarise_time(struct arena *arena, const struct run *run, struct su
     summary->frame_seconds.value = interval.value;
     summary->frame_seconds.low = interval.low;
     summary->frame_seconds.high = interval.high;
+    summary->limit = limit_of(limit_calibration(run, summary->first), summary->first, interval);
 }
 
 static void mark_front(struct arena *arena, struct summary *summaries, size_t count, size_t leader)

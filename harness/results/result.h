@@ -4,10 +4,13 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "calibrate/calibrate.h"
 #include "plan/plan.h"
 #include "truth/metrics.h"
 
-#define RESULT_VERSION 1
+/* Version 2 added the calibration. A run of version 1 is read as one that has none. */
+#define RESULT_VERSION 2
+#define RESULT_VERSION_OLDEST 1
 
 /* Scalar columns, one table for JSON keys, report columns and docs. X(field, unit, better, doc).
  * All are double; NaN in memory means "not measured" and is null in JSON. Times of frames are in
@@ -89,9 +92,14 @@ struct run {
     struct provenance provenance;
     size_t results_count;
     struct result *results; /* in file order */
-    size_t torn_lines;      /* a last line cut by a kill is dropped and counted */
+    size_t calibrations_count;
+    struct calibration *calibrations; /* at most one a target format and size */
+    size_t torn_lines;                /* a last line cut by a kill is dropped and counted */
 };
 
+struct json;
+/* The line's version is one that this program reads; else the document's error is set. */
+enum status result_version_check(struct json *root);
 /* One line without newline, in the arena. */
 char *result_to_json(struct arena *arena, const struct result *result);
 enum status result_from_json(struct arena *arena, const char *text, const char *where,
@@ -103,6 +111,8 @@ char *provenance_to_json(struct arena *arena, const struct provenance *provenanc
 enum status run_open(const char *folder, const struct provenance *provenance, bool resume,
                      struct error *error);
 enum status run_append(const char *folder, const struct result *result, struct error *error);
+enum status run_append_calibration(const char *folder, const struct calibration *calibration,
+                                   struct error *error);
 /* Reads a run; accepts the folder or the file. A malformed line in the middle is STATUS_INVALID
  * with its number. */
 enum status run_read(struct arena *arena, const char *path, struct run **run, struct error *error);

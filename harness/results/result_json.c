@@ -228,6 +228,15 @@ static void lists_get(struct arena *arena, struct json *root, struct result *res
     result->flicker.peak_frame = (size_t)json_integer(flicker, "peak_frame", 0, 0, INT32_MAX);
 }
 
+enum status result_version_check(struct json *root)
+{
+    int version = (int)json_integer(root, "version", -1, 0, INT32_MAX);
+    if (version >= RESULT_VERSION_OLDEST && version <= RESULT_VERSION)
+        return STATUS_OK;
+    return json_fail(root, "version", "value is %d; this treeline reads version %d to %d", version,
+                     RESULT_VERSION_OLDEST, RESULT_VERSION);
+}
+
 enum status result_from_json(struct arena *arena, const char *text, const char *where,
                              struct result *result, struct error *error)
 {
@@ -236,10 +245,8 @@ enum status result_from_json(struct arena *arena, const char *text, const char *
     if (!doc)
         return STATUS_INVALID;
     struct json *root = json_root(doc);
-    int64_t version = json_integer(root, "version", -1, 0, INT32_MAX);
-    if (version != RESULT_VERSION)
-        return json_fail(root, "version", "value is %d; this treeline reads version %d",
-                         (int)version, RESULT_VERSION);
+    if (result_version_check(root))
+        return json_end(doc);
     cell_get(root, &result->cell);
     result->repetition = (int)json_integer(root, "repetition", -1, 0, INT32_MAX);
     const char *word = json_text(root, "status", "");

@@ -2,6 +2,7 @@
 #include "results/run.h"
 
 #include "base/file.h"
+#include "results/calibration.h"
 #include "wall/json.h"
 
 #include <errno.h>
@@ -48,10 +49,8 @@ static enum status provenance_from_json(struct arena *arena, const char *text, c
     const char *kind = json_text(root, "kind", "");
     if (strcmp(kind, "treeline-run") != 0)
         json_fail(root, "kind", "value is '%s'; the first line of a run says treeline-run", kind);
-    int64_t version = json_integer(root, "version", -1, 0, INT32_MAX);
-    if (version != RESULT_VERSION)
-        return json_fail(root, "version", "value is %d; this treeline reads version %d",
-                         (int)version, RESULT_VERSION);
+    if (result_version_check(root))
+        return json_end(doc);
 #define TEXT_GET(field) provenance->field = json_text(root, #field, "");
     PROVENANCE_TEXTS(TEXT_GET)
 #undef TEXT_GET
@@ -79,6 +78,28 @@ static const char *folder_of(struct arena *arena, const char *file)
     return slash ? arena_printf(arena, "%.*s", (int)(slash - file), file) : ".";
 }
 
+/* Place for one more; twice as many each time. */
+static struct calibration *calibration_add(struct arena *arena, struct run *run)
+{
+    size_t count = run->calibrations_count;
+    if (!(count & (count - 1))) {
+        struct calibration *more = ARENA_ARRAY(arena, struct calibration, count ? 2 * count : 1);
+        if (count)
+            memcpy(more, run->calibrations, count * sizeof *more);
+        run->calibrations = more;
+    }
+    return &run->calibrations[run->calibrations_count++];
+}
+
+/* One line behind the first: a result, or a calibration, which alone says its kind. */
+static enum status line_read(struct arena *arena, const char *line, const char *where,
+                             struct run *run, struct error *error)
+{
+    if (strstr(line, "\"kind\":\"" CALIBRATION_KIND "\""))
+        return calibration_from_json(arena, line, where, calibration_add(arena, run), error);
+    return result_from_json(arena, line, where, &run->results[run->results_count++], error);
+}
+
 /* Reads line by line; the text is cut in place. */
 static enum status lines_read(struct arena *arena, const char *file, char *text, size_t size,
                               struct run *run, struct error *error)
@@ -98,13 +119,11 @@ static enum status lines_read(struct arena *arena, const char *file, char *text,
         char *where = arena_printf(arena, "%s:%zu", file, number);
         if (strlen(line) != (size_t)(end - line))
             return error_set(error, STATUS_INVALID, "%s: a NUL byte in the line", where);
-        enum status status =
-            number == 1
-                ? provenance_from_json(arena, line, where, &run->provenance, error)
-                : result_from_json(arena, line, where, &run->results[run->results_count], error);
+        enum status status = number == 1
+                                 ? provenance_from_json(arena, line, where, &run->provenance, error)
+                                 : line_read(arena, line, where, run, error);
         if (status)
             return status;
-        run->results_count += number > 1;
     }
     if (!number || (number == 1 && run->torn_lines))
         return error_set(error, STATUS_INVALID,
@@ -225,12 +244,27 @@ enum status run_open(const char *folder, const struct provenance *provenance, bo
     return status;
 }
 
+static enum status line_append(struct arena *arena, const char *folder, const char *text,
+                               struct error *error)
+{
+    const char *file = arena_printf(arena, "%s/cells.jsonl", folder);
+    const char *line = arena_printf(arena, "%s\n", text);
+    return file_append(file, line, strlen(line), error);
+}
+
 enum status run_append(const char *folder, const struct result *result, struct error *error)
 {
     struct arena *arena = arena_create(0);
-    const char *file = arena_printf(arena, "%s/cells.jsonl", folder);
-    const char *line = arena_printf(arena, "%s\n", result_to_json(arena, result));
-    enum status status = file_append(file, line, strlen(line), error);
+    enum status status = line_append(arena, folder, result_to_json(arena, result), error);
+    arena_destroy(arena);
+    return status;
+}
+
+enum status run_append_calibration(const char *folder, const struct calibration *calibration,
+                                   struct error *error)
+{
+    struct arena *arena = arena_create(0);
+    enum status status = line_append(arena, folder, calibration_to_json(arena, calibration), error);
     arena_destroy(arena);
     return status;
 }

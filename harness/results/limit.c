@@ -1,0 +1,151 @@
+/* From counts and calibrated rates to the least time of a frame and the share of it. */
+#include "results/limit.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct interval nothing = {NAN, NAN, NAN};
+
+const char *limit_word(enum limit_resource resource)
+{
+    static const char *const words[LIMIT_COUNT] = {
+#define LIMIT_WORD(name, word, doc) [name] = (word),
+        LIMIT_LIST(LIMIT_WORD)
+#undef LIMIT_WORD
+    };
+    return words[resource];
+}
+
+const struct calibration *limit_calibration(const struct run *run, const struct result *result)
+{
+    const struct calibration *best = NULL;
+    double nearest = INFINITY;
+    for (size_t i = 0; i < run->calibrations_count; i++) {
+        const struct calibration *one = &run->calibrations[i];
+        if (one->format != result->cell.format || one->threads != result->threads ||
+            !result->renderer || strcmp(one->renderer, result->renderer) != 0)
+            continue;
+        double pixels = (double)result->cell.width_px * result->cell.height_px;
+        double away = fabs(log((double)one->width_px * one->height_px / pixels));
+        if (away < nearest) {
+            nearest = away;
+            best = one;
+        }
+    }
+    return best;
+}
+
+/* A triangle's size in fragments and its time at the rate's value, low and high end. */
+struct size_point {
+    double fragments, seconds[3];
+};
+
+static void seconds_of(struct interval rate, double seconds[3])
+{
+    seconds[0] = 1 / rate.value;
+    seconds[1] = 1 / rate.high;
+    seconds[2] = 1 / rate.low;
+}
+
+/* Sizes that were measured, ascending; returns how many. */
+static size_t size_points(const struct calibration *calibration, struct size_point points[5])
+{
+    static const enum calibration_index sizes[] = {CALIBRATION_triangles_shared,
+                                                   CALIBRATION_quads_2px, CALIBRATION_quads_8px,
+                                                   CALIBRATION_quads_32px};
+    size_t count = 0;
+    double before = 0;
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        const struct calibration_measure *measure = &calibration->measures[sizes[i]];
+        if (!(measure->rate.low > 0) || !(measure->fragments_per_triangle > before))
+            continue;
+        before = points[count].fragments = measure->fragments_per_triangle;
+        seconds_of(measure->rate, points[count++].seconds);
+    }
+    const struct calibration_measure *fill = &calibration->measures[CALIBRATION_fill_opaque];
+    if (fill->rate.low > 0 && fill->fragments_per_triangle > before) {
+        points[count].fragments = fill->fragments_per_triangle;
+        seconds_of(fill->rate, points[count].seconds);
+        for (int end = 0; end < 3; end++)
+            points[count].seconds[end] *= fill->fragments_per_triangle;
+        count++;
+    }
+    return count;
+}
+
+struct interval limit_triangle_rate(const struct calibration *calibration,
+                                    double fragments_per_triangle)
+{
+    struct interval culled = calibration->measures[CALIBRATION_triangles_culled].rate;
+    struct size_point points[6];
+    points[0].fragments = 0;
+    seconds_of(culled, points[0].seconds);
+    size_t count = 1 + size_points(calibration, points + 1), k = 1;
+    double at = fragments_per_triangle, seconds[3];
+    if (!(culled.low > 0) || count < 2 || isnan(at))
+        return nothing;
+    while (k < count - 1 && points[k].fragments < at)
+        k++;
+    const struct size_point *low = &points[k - 1], *high = &points[k];
+    for (int end = 0; end < 3; end++) {
+        if (at > high->fragments)
+            seconds[end] = high->seconds[end] * at / high->fragments;
+        else if (k == 1)
+            seconds[end] =
+                low->seconds[end] + (high->seconds[end] - low->seconds[end]) * at / high->fragments;
+        else
+            seconds[end] = low->seconds[end] *
+                           pow(high->seconds[end] / low->seconds[end],
+                               log(at / low->fragments) / log(high->fragments / low->fragments));
+    }
+    return (struct interval){1 / seconds[0], 1 / seconds[2], 1 / seconds[1]};
+}
+
+/* Least time for a count of things at a rate. */
+static struct interval least_seconds(double count, struct interval rate)
+{
+    if (isnan(count) || !(rate.low > 0))
+        return nothing;
+    return (struct interval){count / rate.value, count / rate.high, count / rate.low};
+}
+
+static void bind(struct limit *limit, enum limit_resource resource, struct interval seconds)
+{
+    limit->bounds[resource] = seconds.value;
+    if (isnan(seconds.value) || seconds.value <= limit->seconds.value)
+        return;
+    limit->resource = resource;
+    limit->seconds = seconds;
+}
+
+struct limit limit_of(const struct calibration *calibration, const struct result *result,
+                      struct interval frame_seconds)
+{
+    struct limit limit = {.resource = LIMIT_UNKNOWN, .seconds = nothing, .fraction = nothing};
+    for (size_t i = 0; i < LIMIT_COUNT; i++)
+        limit.bounds[i] = NAN;
+    limit.fragments_per_triangle = NAN;
+    if (!calibration)
+        return limit;
+    const struct calibration_measure *measures = calibration->measures;
+    double pixels = (double)result->cell.width_px * result->cell.height_px;
+    if (result->primitives > 0)
+        limit.fragments_per_triangle = fmax(0, result->fragments - pixels) / result->primitives;
+    struct interval triangles = least_seconds(
+        result->primitives, limit_triangle_rate(calibration, limit.fragments_per_triangle));
+    limit.mixed = triangles.value > frame_seconds.value;
+    if (limit.mixed)
+        triangles = least_seconds(result->primitives, measures[CALIBRATION_triangles_culled].rate);
+    bind(&limit, LIMIT_CALLS,
+         least_seconds(result->draw_calls, measures[CALIBRATION_calls_bare].rate));
+    bind(&limit, LIMIT_VERTICES,
+         least_seconds(result->vertices, measures[CALIBRATION_vertices].rate));
+    bind(&limit, LIMIT_TRIANGLES, triangles);
+    bind(&limit, LIMIT_FILL,
+         least_seconds(result->fragments, measures[CALIBRATION_fill_opaque].rate));
+    if (frame_seconds.value > 0)
+        limit.fraction = (struct interval){limit.seconds.value / frame_seconds.value,
+                                           limit.seconds.low / frame_seconds.high,
+                                           limit.seconds.high / frame_seconds.low};
+    return limit;
+}

@@ -1,0 +1,50 @@
+/* How near a cell comes to what its machine can do: the roofline of Williams et al. 2009,
+ * doi:10.1145/1498765.1498785, over the resources whose use a cell's results count. */
+#ifndef TREELINE_RESULTS_LIMIT_H
+#define TREELINE_RESULTS_LIMIT_H
+
+#include "results/result.h"
+#include "stats/stats.h"
+
+/* X(name, word, doc) */
+#define LIMIT_LIST(X)                                                                              \
+    X(LIMIT_UNKNOWN, "", "nothing is counted, or the run has no calibration that fits")            \
+    X(LIMIT_CALLS, "draw calls", "draw calls / calls_bare")                                        \
+    X(LIMIT_VERTICES, "vertices", "vertices / vertices")                                           \
+    X(LIMIT_TRIANGLES, "triangles", "primitives / rate of triangles of their mean size")           \
+    X(LIMIT_FILL, "fill", "fragments / fill_opaque")
+
+enum limit_resource {
+#define LIMIT_ENUM(name, word, doc) name,
+    LIMIT_LIST(LIMIT_ENUM)
+#undef LIMIT_ENUM
+        LIMIT_COUNT
+};
+const char *limit_word(enum limit_resource resource);
+
+struct limit {
+    enum limit_resource resource;  /* that takes longest: the binding one */
+    struct interval seconds;       /* least time of a frame by it; NaN when unknown */
+    struct interval fraction;      /* of the limit that is reached: seconds / frame time */
+    double bounds[LIMIT_COUNT];    /* least time by each resource, s; NaN: not counted */
+    double fragments_per_triangle; /* beyond one fragment a pixel, which the backdrop takes */
+    bool mixed; /* the frame took less time than triangles of one size would have, so it mixes
+                   sizes; triangles then count by the rate of culled ones */
+};
+
+/* The calibration of the run that fits the result: same target format, threads and renderer; of
+ * several the nearest size. NULL: there is none. */
+const struct calibration *limit_calibration(const struct run *run, const struct result *result);
+
+/* Least times by the counts of the result (of a repetition that drew all pictures) over the rates
+ * of the calibration; calibration NULL: unknown. frame_seconds: median and interval of the cell. */
+struct limit limit_of(const struct calibration *calibration, const struct result *result,
+                      struct interval frame_seconds);
+
+/* Rate of triangles that shade so many fragments each, in 1/s, from the calibrated sizes:
+ * interpolated in the logarithms of size and rate; below the smallest size in the time between it
+ * and a culled one, above the largest by fill. */
+struct interval limit_triangle_rate(const struct calibration *calibration,
+                                    double fragments_per_triangle);
+
+#endif
