@@ -43,7 +43,7 @@ prints() {
   fi
 }
 lines() { wc -l <"$1"; }
-fast=(--frame-seconds 0.02 --frames-max 5 --views 1 --reference-error 0.1 --reference-samples 16)
+fast=(--no-calibrate --frame-seconds 0.02 --frames-max 5 --views 1 --reference-error 0.1 --reference-samples 16)
 good=(--scene tiny --method null --trees 1 --size 32x24)
 make -s -j"$(nproc)" plugins >/dev/null 2>&1
 [ -f "$plugins/bad.so" ] || make -s CC="${CC:-gcc}" "${plugins#"$PWD"/}/bad.so" >/dev/null
@@ -171,12 +171,25 @@ if python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); assert d["cells"
 else
   bad 'the table as JSON' "$(head -c 300 "$work/out")"
 fi
-if python3 - "$work/run/cells.jsonl" <<'P'; then ok 'every line is strict JSON of version 1'; else bad 'every line is strict JSON of version 1'; fi
+if python3 - "$work/run/cells.jsonl" <<'P'; then ok 'every line is strict JSON of version 2'; else bad 'every line is strict JSON of version 2'; fi
 import json, sys
 def no(x): raise ValueError(x)
 for line in open(sys.argv[1]):
-    assert json.loads(line, parse_constant=no)["version"] == 1
+    assert json.loads(line, parse_constant=no)["version"] == 2
 P
+
+once=(--frame-seconds 0.02 --frames-max 5 --views 1 --reference-error 0.1 --reference-samples 16 -q)
+try run "${good[@]}" "${once[@]}" --rounds 1 --target rgba8,rgba16f --out "$work/limits"
+is 'a run calibrates once a target format' "$(grep -c '"kind":"treeline-calibration"' "$work/limits/cells.jsonl")" -eq 2
+try run "${good[@]}" "${once[@]}" --rounds 2 --target rgba8,rgba16f --out "$work/limits" --resume
+is 'a resumed run does not calibrate again' "$(grep -c '"kind":"treeline-calibration"' "$work/limits/cells.jsonl")" -eq 2
+is 'its results are all there' "$(lines "$work/limits/cells.jsonl")" -eq 7
+try calibrate --seconds 0.05 --size 128x128 --threads 1
+is 'calibrate prints a row for each kind of work' $rc -eq 0 -a "$(grep -cE '^[a-z_0-9]+ +[0-9.e+]+ ' "$work/out")" -eq 19
+try calibrate --seconds 0.05 --size 128x128 --json
+is 'calibrate --json prints the record' "$(python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); print(all(m["rate"] > 0 for m in d["measures"].values()))' "$work/out")" = True
+refuses 'a picture too small to calibrate on' 64 "--size: '3x3' is not WxH in pixels, each side in 128..2048" calibrate --size 3x3
+refuses 'a target that is none' 64 "--target: 'rgb' is not one of" calibrate --target rgb
 
 # 4. Cells that fail are results.
 try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q
@@ -192,7 +205,7 @@ is 'a timeout is a result' "$(grep -c '"status":"timeout"' "$work/hang/cells.jso
 
 # 5. Interruption. The slow method takes 50 ms a frame.
 slow=(--scene tiny --method "$plugins/bad.so:way=slow" --trees 1 --size 32x24,33x24,34x24 --frame-seconds 0.2
-  --views 1 --rounds 3 --reference-error 0.1 --reference-samples 16)
+  --views 1 --rounds 3 --reference-error 0.1 --reference-samples 16 --no-calibrate)
 # wait_lines FILE N: until the file has N lines, 60 s at most
 wait_lines() { for _ in $(seq 600); do [ -f "$1" ] && [ "$(lines "$1")" -ge "$2" ] && return; sleep 0.1; done; }
 # finish NAME DIR: resumes, and checks that each (cell, repetition) stands once

@@ -9,6 +9,7 @@
 #include "report/report.h"
 #include "results/run.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -123,6 +124,13 @@ static enum status repetition_do(struct rounds *rounds, const struct cell *cell,
     return status;
 }
 
+/* A twentieth of the measuring, within bounds. */
+static double calibration_seconds(const struct rounds *rounds)
+{
+    double share = 0.05 * (double)rounds->count * repetition_guess_seconds(rounds->plan);
+    return fmin(fmax(share, 0.3), CALIBRATE_SECONDS);
+}
+
 static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct error *error)
 {
     const struct plan *plan = rounds->plan;
@@ -140,7 +148,10 @@ static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct 
                 rounds->folder, (double)rounds->count * repetition_guess_seconds(plan));
     if (!rounds->count)
         return STATUS_OK;
-    status = cell_references(arena, plan, rounds->folder, rounds->request->quiet, error);
+    if (!rounds->request->no_calibrate)
+        status = cell_calibrate(arena, plan, rounds->folder, calibration_seconds(rounds), error);
+    if (!status)
+        status = cell_references(arena, plan, rounds->folder, rounds->request->quiet, error);
     if (status)
         return status;
     rounds->progress = progress_start("cells", (double)rounds->count, rounds->request->quiet);

@@ -8,7 +8,7 @@
 struct run_request {
     struct plan_request plan;
     const char *out; /* NULL: results/PLAN-TIME */
-    bool resume, retry, dry_run, report, quiet, json;
+    bool resume, retry, dry_run, report, quiet, json, no_calibrate;
 };
 
 /* The command line; ends the process on a wrong one. Lists are allocated in the arena. */

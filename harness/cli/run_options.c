@@ -27,6 +27,7 @@ enum {
     KEY_RESUME,
     KEY_RETRY,
     KEY_DRY_RUN,
+    KEY_NO_CALIBRATE,
     KEY_REPORT,
     KEY_JSON
 };
@@ -63,6 +64,8 @@ static const struct argp_option options[] = {
     {"resume", KEY_RESUME, NULL, 0, "continue the run in DIR: finished repetitions are kept", 3},
     {"retry", KEY_RETRY, NULL, 0, "with --resume: failed repetitions are run again", 3},
     {"dry-run", KEY_DRY_RUN, NULL, 0, "print the names of the cells and stop", 3},
+    {"no-calibrate", KEY_NO_CALIBRATE, NULL, 0,
+     "do not measure the machine's limits (at most 6 s, once a run)", 3},
     {"report", KEY_REPORT, NULL, 0, "write the report to reports/NAME-OF-DIR and print its path",
      3},
     {"json", KEY_JSON, NULL, 0, "the closing table as JSON", 3},
@@ -128,6 +131,9 @@ static error_t parse_run(int key, char *text, const struct argp_state *state,
         return 0;
     case KEY_DRY_RUN:
         request->dry_run = true;
+        return 0;
+    case KEY_NO_CALIBRATE:
+        request->no_calibrate = true;
         return 0;
     case KEY_REPORT:
         request->report = true;

@@ -48,6 +48,8 @@ static void row_print(const struct summary *summary, int width)
     number_print(8, 1, 1 / summary->frame_seconds.value);
     number_print(8, 4, errors.flip);
     number_print(8, 4, errors.rmse);
+    number_print(8, 1, 100 * summary->limit.fraction.value);
+    printf("  %-10s", limit_word(summary->limit.resource));
     if (summary->failures)
         printf("  %s (%zu of %zu failed)\n",
                summary->repetitions ? "partly" : status_word(result->status), summary->failures,
@@ -76,6 +78,10 @@ static void rows_json(struct arena *arena, const struct summary *rows, size_t co
         json_put_number(out, "frame_seconds_high", rows[i].frame_seconds.high);
         json_put_number(out, "flip", errors.flip);
         json_put_number(out, "rmse", errors.rmse);
+        json_put_text(out, "bound_by", limit_word(rows[i].limit.resource));
+        json_put_number(out, "limit_fraction", rows[i].limit.fraction.value);
+        json_put_number(out, "limit_fraction_low", rows[i].limit.fraction.low);
+        json_put_number(out, "limit_fraction_high", rows[i].limit.fraction.high);
         json_put_bool(out, "on_front", rows[i].on_front);
         json_close(out);
     }
@@ -118,8 +124,8 @@ enum status run_table(struct arena *arena, const char *folder, bool json, struct
         int length = (int)strlen(rows[i].first->cell.name);
         width = length > width ? length : width;
     }
-    printf("%-*s %10s %10s %10s %8s %8s %8s  %s\n", width, "cell", "ms", "low", "high", "fps",
-           "flip", "rmse", "status");
+    printf("%-*s %10s %10s %10s %8s %8s %8s %8s  %-10s  %s\n", width, "cell", "ms", "low", "high",
+           "fps", "flip", "rmse", "% limit", "of", "status");
     for (size_t i = 0; i < count; i++)
         row_print(&rows[i], width);
     return STATUS_OK;

@@ -1,0 +1,95 @@
+/* The calibration of a run: in a child process, once for each target format of its cells. */
+#include "cell/cell.h"
+
+#include "cell/process.h"
+#include "results/calibration.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* In the child: one line with the calibration. */
+static enum status calibration_work(void *context, int out)
+{
+    const struct calibrate_request *request = context;
+    struct arena *arena = arena_create(0);
+    struct calibration calibration;
+    struct error error = {0};
+    enum status status = calibrate_run(arena, request, &calibration, &error);
+    if (!status && dprintf(out, "%s\n", calibration_to_json(arena, &calibration)) < 0)
+        return STATUS_IO;
+    if (status)
+        fprintf(stderr, "\n%s\n", error.text);
+    return status;
+}
+
+/* Measures and keeps one; what fails is told, and the run goes on without. */
+static enum status calibration_do(struct arena *arena, struct calibrate_request *request,
+                                  const char *folder, struct error *error)
+{
+    struct process_request process = {
+        .work = calibration_work, .context = request, .timeout_seconds = 60 + 4 * request->seconds};
+    struct process_outcome outcome;
+    struct calibration calibration;
+    struct error why = {0};
+    enum status status = process_run(arena, &process, &outcome, &why);
+    if (!status && outcome.interrupted)
+        return error_set(error, STATUS_INTERRUPTED, "stopped while the machine was calibrated");
+    char *line = status ? NULL : outcome.output;
+    if (line && *line) {
+        line[strcspn(line, "\n")] = 0;
+        status =
+            calibration_from_json(arena, line, "the calibration's process", &calibration, &why);
+    }
+    if (!status && line && *line && !outcome.signal && !outcome.exit_code)
+        return run_append_calibration(folder, &calibration, error);
+    fprintf(stderr, "treeline: the machine was not calibrated for %s, no limits are told: %s\n",
+            target_format_word(request->format),
+            status              ? why.text
+            : outcome.timed_out ? "it took too long"
+            : outcome.signal    ? strsignal(outcome.signal)
+                                : outcome.errors);
+    return STATUS_OK;
+}
+
+/* The cells of this format that OpenGL draws: their largest picture. False when there is none. */
+static bool largest_picture(const struct plan *plan, enum target_format format,
+                            struct calibrate_request *request)
+{
+    double most = 0;
+    for (size_t i = 0; i < plan->cells_count; i++) {
+        const struct cell *cell = &plan->cells[i];
+        double pixels = (double)cell->width_px * cell->height_px;
+        if (cell->format != format || cell->method->traits & TRAIT_CPU || pixels <= most)
+            continue;
+        most = pixels;
+        request->width_px = cell->width_px;
+        request->height_px = cell->height_px;
+    }
+    return most > 0;
+}
+
+enum status cell_calibrate(struct arena *arena, const struct plan *plan, const char *folder,
+                           double seconds, struct error *error)
+{
+    struct run *run;
+    enum status status = run_read(arena, folder, &run, error);
+    for (int format = TARGET_RGBA8; format <= TARGET_RGBA32F && !status; format++) {
+        struct calibrate_request request = {.backend = plan->backend,
+                                            .threads = plan->threads,
+                                            .format = (enum target_format)format,
+                                            .seconds = seconds};
+        bool kept = false;
+        if (!largest_picture(plan, request.format, &request))
+            continue;
+        request = calibrate_held(&request);
+        for (size_t i = 0; i < run->calibrations_count; i++) {
+            const struct calibration *one = &run->calibrations[i];
+            kept |= one->format == request.format && one->threads == request.threads &&
+                    one->width_px == request.width_px && one->height_px == request.height_px;
+        }
+        if (!kept)
+            status = calibration_do(arena, &request, folder, error);
+    }
+    return status;
+}
