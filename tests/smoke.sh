@@ -48,7 +48,8 @@ check 'it is the same picture' cmp "$folder/points.exr" "$folder/commas.exr"
 check 'the results make sense' python3 - "$run/cells.jsonl" <<'PY'
 import json, sys
 lines = [json.loads(line) for line in open(sys.argv[1])]
-head, cells = lines[0], lines[1:]
+head, cells = lines[0], [line for line in lines[1:] if "cell" in line]
+assert sum(line["kind"] == "treeline-calibration" for line in lines[1:] if "kind" in line) == 1
 assert head["kind"] == "treeline-run" and head["cores"] >= 1
 assert cells and all(c["status"] == "ok" and c["message"] == "" for c in cells), [c["message"] for c in cells]
 first = {c["method"]: c for c in cells if c["repetition"] == 0}

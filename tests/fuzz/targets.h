@@ -8,6 +8,7 @@
 #include "plan/names.h"
 #include "plan/settings.h"
 #include "plant/import_steps.h"
+#include "results/calibration.h"
 #include "results/result.h"
 #include "scene/scene.h"
 #include "truth/frame.h"
@@ -194,6 +195,14 @@ static void fuzz_results(struct fuzz *fuzz)
             fuzz_fail("a result reads back", fuzz->error.text);
         if (strcmp(line, result_to_json(fuzz->arena, &again)) != 0)
             fuzz_fail("a result reads back as the same", line);
+    }
+    for (size_t i = 0; i < run->calibrations_count; i++) {
+        const char *line = calibration_to_json(fuzz->arena, &run->calibrations[i]);
+        struct calibration again;
+        if (calibration_from_json(fuzz->arena, line, "again", &again, &fuzz->error) != STATUS_OK)
+            fuzz_fail("a calibration reads back", fuzz->error.text);
+        if (strcmp(line, calibration_to_json(fuzz->arena, &again)) != 0)
+            fuzz_fail("a calibration reads back as the same", line);
     }
 }
 
