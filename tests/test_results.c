@@ -303,8 +303,8 @@ static void test_run__what_is_no_run_is_refused_and_left_as_it_is(void **state)
     static const char *const texts[] = {
         "a thesis without an end",
         "two lines\nof a thesis",
-        "{\"version\":2,\"kind\":\"treeline-run\"",
-        "{\"version\":2,\"kind\":\"treeline-run\"}\n{\"version\":2,\"cell\":\"cut",
+        "{\"version\":3,\"kind\":\"treeline-run\"",
+        "{\"version\":3,\"kind\":\"treeline-run\"}\n{\"version\":3,\"cell\":\"cut",
     };
     struct arena *arena = arena_create(0);
     struct error error = {0};
