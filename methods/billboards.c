@@ -1,4 +1,4 @@
-/* billboards: one picture a tree on a quad that turns to the eye, from an atlas of views. */
+/* billboards: one picture a tree that turns to the eye, from an atlas of views. */
 #include "bake/impostor.h"
 #include "method/method.h"
 
@@ -32,7 +32,9 @@ static const struct option table[] = {
 
 struct state {
     struct impostor *impostor;
-    GLuint quads, hulls; /* hulls: 0 where several pictures are mixed */
+    GLuint far_program; /* triangles, or quads where several pictures are mixed */
+    GLuint hulls;       /* 0 where several pictures are mixed */
+    int far_corners;
     int side;
 };
 
@@ -47,12 +49,13 @@ static enum status programs(struct workspace *workspace, const struct options *o
                             struct state *state)
 {
     int views = options->pick == 0 ? 1 : options->layout == VIEWS_CIRCLE ? 2 : 3;
-    const char *quads =
-        arena_printf(workspace->arena, "LAYOUT %d\nVIEWS %d\nCORNERS 4\n", options->layout, views);
+    state->far_corners = views == 1 ? 3 : 4;
+    const char *far = arena_printf(workspace->arena, "LAYOUT %d\nVIEWS %d\nCORNERS %d\n",
+                                   options->layout, views, state->far_corners);
     const char *hulls = arena_printf(workspace->arena, "LAYOUT %d\nVIEWS %d\nCORNERS %d\n",
                                      options->layout, views, ATLAS_HULL);
     enum status status = impostor_program(workspace, state->impostor, "billboards", billboards_glsl,
-                                          quads, &state->quads);
+                                          far, &state->far_program);
     if (status == STATUS_OK && views == 1)
         status = impostor_program(workspace, state->impostor, "billboards", billboards_glsl, hulls,
                                   &state->hulls);
@@ -86,7 +89,8 @@ static void draw_trees(struct workspace *workspace, const struct state *state,
         return;
     impostor_use(workspace, state->impostor, program, view, first);
     workspace->gl->Uniform1i(gl_uniform(workspace->gl, program, "side"), state->side);
-    impostor_draw(workspace, state->impostor, program == state->hulls ? ATLAS_HULL : 4, count);
+    impostor_draw(workspace, state->impostor,
+                  program == state->hulls ? ATLAS_HULL : state->far_corners, count);
 }
 
 static enum status draw(struct workspace *workspace, void *own, const struct view *view,
@@ -101,11 +105,11 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
         state->hulls ? impostor_near_count(state->impostor, view, &list, IMPOSTOR_HULL_PX, 1) : 0;
     size_t far = list.count - near;
     if (state->impostor->alpha == ATLAS_BLEND) {
-        draw_trees(workspace, state, view, state->quads, 0, far);
+        draw_trees(workspace, state, view, state->far_program, 0, far);
         draw_trees(workspace, state, view, state->hulls, far, near);
     } else {
         draw_trees(workspace, state, view, state->hulls, 0, near);
-        draw_trees(workspace, state, view, state->quads, near, far);
+        draw_trees(workspace, state, view, state->far_program, near, far);
     }
     return impostor_end(workspace, state->impostor, target, "billboards");
 }

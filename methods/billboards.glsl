@@ -1,4 +1,4 @@
-// One quad (or fan of 8) a tree that faces the eye. LAYOUT: 0 circle, 1 hemisphere, 2 octahedron.
+// One quad (or triangle, or fan of 8) a tree that faces the eye. LAYOUT: 0 circle, 1 hemisphere, 2 octahedron.
 uniform int side;  // views on the circle, or along the square
 
 #pragma stage vertex
@@ -103,6 +103,8 @@ void main()
         }
     }
     st = corner_of(low - margin, high + margin, corner);
+#elif CORNERS == 3
+    st = triangle_corner(first, corner, margin);
 #else
     st = first.hull[corner];
     st += margin * sign(st - 0.5 * (first.bounds.xy + first.bounds.zw));

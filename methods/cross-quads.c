@@ -32,7 +32,8 @@ static const float whole_area_px = 1000;
 
 struct state {
     struct impostor *impostor;
-    GLuint quads, near_program; /* of whole planes; of halves (blended) or hulls (opaque) */
+    GLuint far_program;  /* of whole planes, a triangle each */
+    GLuint near_program; /* of halves (blended) or hulls (opaque) */
     size_t planes;
 };
 
@@ -63,7 +64,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
                                           (halves ? 2 : 1) * state->planes, &state->impostor);
     if (status == STATUS_OK)
         status = impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
-                                  "VIEWS 1\nHALVES 0\nCORNERS 4\n", &state->quads);
+                                  "VIEWS 1\nHALVES 0\nCORNERS 3\n", &state->far_program);
     if (status == STATUS_OK)
         status = impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
                                   halves ? "VIEWS 1\nHALVES 1\nCORNERS 4\n"
@@ -76,12 +77,15 @@ static void draw_trees(struct workspace *workspace, const struct state *state,
                        const struct view *view, bool near, size_t first, size_t count)
 {
     bool blend = state->impostor->alpha == ATLAS_BLEND;
-    GLuint program = near ? state->near_program : state->quads;
+    GLuint program = near ? state->near_program : state->far_program;
     if (count == 0)
         return;
     impostor_use(workspace, state->impostor, program, view, first);
     workspace->gl->Uniform1i(gl_uniform(workspace->gl, program, "planes"), (GLint)state->planes);
-    impostor_draw(workspace, state->impostor, near && !blend ? ATLAS_HULL : 4,
+    impostor_draw(workspace, state->impostor,
+                  !near   ? 3
+                  : blend ? 4
+                          : ATLAS_HULL,
                   count * state->planes * (near && blend ? 2 : 1));
 }
 

@@ -49,6 +49,8 @@ void main()
         low.x = min(low.x, high.x);
     }
     vec2 st = corner_of(low, high, corner);
+#elif CORNERS == 3
+    vec2 st = triangle_corner(pic, corner, margin);
 #else
     vec2 st = pic.hull[corner];
     st += margin * sign(st - 0.5 * (pic.bounds.xy + pic.bounds.zw));

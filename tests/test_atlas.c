@@ -252,6 +252,48 @@ static void test_mips__the_alpha_test_passes_as_much_as_is_covered(void **state)
     assert_true(atlas_test_scale(texels, W, H, false) == 1);
 }
 
+/* Every corner of a covered texel lies within the triangle, which touches the picture with each
+ * side, and moves out by 1/4 when told so. */
+static void triangle_holds(const struct atlas_view *view, const uint8_t (*albedo)[4], int width,
+                           int height, float texel)
+{
+    for (int i = 0; i < 3; i++) {
+        const float *a = view->triangle[i], *b = view->triangle[(i + 1) % 3];
+        float u[2] = {b[0] - a[0], b[1] - a[1]}, least = INFINITY;
+        float length = hypotf(u[0], u[1]);
+        for (int k = 0; k < 4 * width * height; k++) {
+            int x = k / 4 % width, y = k / 4 / width;
+            float s = view->origin_s + texel * (float)(x + k % 2);
+            float t = view->origin_t + texel * (float)(y + k / 2 % 2);
+            if (albedo[y * width + x][3])
+                least = fminf(least, (u[0] * (t - a[1]) - u[1] * (s - a[0])) / length);
+        }
+        assert_true(fabsf(least) < 1e-4f * length);
+        float at[2] = {a[0] + 0.25f * a[2], a[1] + 0.25f * a[3]};
+        float to[2] = {b[0] + 0.25f * b[2], b[1] + 0.25f * b[3]};
+        float out = -(u[0] * (at[1] - a[1]) - u[1] * (at[0] - a[0])) / length;
+        float end = -(u[0] * (to[1] - a[1]) - u[1] * (to[0] - a[0])) / length;
+        assert_true(fabsf(out - 0.25f) < 1e-3f && fabsf(end - 0.25f) < 1e-3f);
+    }
+}
+
+/* A rectangle has no three sides that make a triangle, the ellipse on a stem has. */
+static void test_outline__the_triangle_holds_a_rectangle(void **state)
+{
+    (void)state;
+    enum { W = 32, H = 48 };
+    static uint8_t albedo[W * H][4];
+    static uint16_t depth[W * H];
+    struct arena *arena = arena_create(0);
+    for (int y = 8; y < 40; y++)
+        for (int x = 4; x < 20; x++)
+            albedo[y * W + x][3] = 255;
+    struct atlas_view view = {.origin_s = 1, .origin_t = -2};
+    atlas_outline(arena, (const uint8_t(*)[4])albedo, depth, W, H, 0.5f, 10, &view);
+    triangle_holds(&view, (const uint8_t(*)[4])albedo, W, H, 0.5f);
+    arena_destroy(arena);
+}
+
 static void test_outline__the_polygon_holds_the_picture_tightly(void **state)
 {
     (void)state;
@@ -285,6 +327,7 @@ static void test_outline__the_polygon_holds_the_picture_tightly(void **state)
             assert_true((b[0] - a[0]) * (t - a[1]) - (b[1] - a[1]) * (s - a[0]) > -1e-3f);
         }
     }
+    triangle_holds(&view, (const uint8_t(*)[4])albedo, W, H, 0.1f);
     double box = (view.high[0] - view.low[0]) * (view.high[1] - view.low[1]);
     assert_true(area < 0.88 * box && area > 0.01 * (double)covered);
     assert_true(fabsf(view.low[1] + 5) < 1e-5f && fabsf(view.high[0] - view.low[0] - 3.9f) < 0.11f);
@@ -519,6 +562,7 @@ int main(void)
         cmocka_unit_test(test_mips__halving_keeps_coverage_colour_and_light),
         cmocka_unit_test(test_mips__the_alpha_test_passes_as_much_as_is_covered),
         cmocka_unit_test(test_outline__the_polygon_holds_the_picture_tightly),
+        cmocka_unit_test(test_outline__the_triangle_holds_a_rectangle),
         cmocka_unit_test(test_bake__a_ball_is_a_disc_with_a_balls_light),
         cmocka_unit_test(test_bake__a_leafs_texture_cuts_it),
         cmocka_unit_test(test_atlas__the_cache_gives_the_same_pictures),

@@ -44,6 +44,8 @@ struct atlas_view {
     float depth_plane[4];        /* depth of what is seen, m: [0] + [1] s + [2] t (least squares) */
     float hull[ATLAS_HULL][2];   /* convex outline of the covered texels, counter-clockwise; may
                                     repeat its last point */
+    float triangle[3][4]; /* smallest found about the hull: corner (s, t), and how it moves when all
+                             sides move out by a metre */
 };
 
 /* One species, as impostor.glsl reads it (std430). */

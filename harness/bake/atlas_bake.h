@@ -37,7 +37,8 @@ void atlas_fill(float *texels, int width_px, int height_px, const float *coarser
 float atlas_test_scale(const float *texels, int width_px, int height_px, bool nearest);
 
 /* The outline of a picture: smallest rectangle and a convex polygon of at most 8 corners that hold
- * all covered texels, half a texel beyond their edge, and the plane fitted to their depth. view's
+ * all covered texels, half a texel beyond their edge, the smallest triangle that prolongs three
+ * sides of their hull, and the plane fitted to their depth. view's
  * origin must be set. */
 void atlas_outline(struct arena *arena, const uint8_t (*albedo)[4], const uint16_t *depth,
                    int width_px, int height_px, float texel_m, float radius_m,

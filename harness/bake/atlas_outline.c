@@ -97,6 +97,82 @@ static size_t hull_reduce(double (*hull)[2], size_t count, size_t wanted)
     return count;
 }
 
+/* Where the lines through edges i and k (from corner i to i + 1) of a polygon meet; false: never.
+ */
+static bool lines_meet(double (*hull)[2], size_t count, size_t i, size_t k, double at[2])
+{
+    const double *a = hull[i], *b = hull[(i + 1) % count];
+    const double *c = hull[k], *d = hull[(k + 1) % count];
+    double u[2] = {b[0] - a[0], b[1] - a[1]}, v[2] = {d[0] - c[0], d[1] - c[1]};
+    double across = u[0] * v[1] - u[1] * v[0];
+    if (fabs(across) < 1e-9)
+        return false;
+    double m = ((c[0] - a[0]) * v[1] - (c[1] - a[1]) * v[0]) / across;
+    at[0] = a[0] + m * u[0];
+    at[1] = a[1] + m * u[1];
+    return true;
+}
+
+/* The smallest triangle whose sides prolong three edges of the polygon (which turns left) and that
+ * holds it; about the rectangle of a polygon that has no three such edges. */
+static void triangle_about(double (*hull)[2], size_t count, const double low[2],
+                           const double high[2], double best[3][2])
+{
+    double width = high[0] - low[0], least = 2 * width * (high[1] - low[1]);
+    const double around[3][2] = {{low[0] - 0.5 * width, low[1]},
+                                 {high[0] + 0.5 * width, low[1]},
+                                 {low[0] + 0.5 * width, 2 * high[1] - low[1]}};
+    memcpy(best, around, sizeof around);
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = i + 1; k < count; k++) {
+            double p[3][2];
+            if (!lines_meet(hull, count, i, k, p[0]))
+                continue;
+            for (size_t m = k + 1; m < count; m++) {
+                if (!lines_meet(hull, count, k, m, p[1]) || !lines_meet(hull, count, m, i, p[2]))
+                    continue;
+                double area = 0.5 * turn(p[0], p[1], p[2]);
+                const double *edges[3][2] = {{hull[k], hull[(k + 1) % count]},
+                                             {hull[m], hull[(m + 1) % count]},
+                                             {hull[i], hull[(i + 1) % count]}};
+                bool inside = area > 0 && area < least;
+                /* each side must run as its edge does, or the triangle lies beyond the polygon */
+                for (int e = 0; e < 3 && inside; e++) {
+                    const double *a = edges[e][0], *b = edges[e][1];
+                    const double *from = p[e], *to = p[(e + 1) % 3];
+                    inside =
+                        (b[0] - a[0]) * (to[0] - from[0]) + (b[1] - a[1]) * (to[1] - from[1]) > 0;
+                }
+                if (inside) {
+                    least = area;
+                    memcpy(best, p, sizeof p);
+                }
+            }
+        }
+}
+
+/* A triangle's corners and how they move: all sides move out by r, the radius of the circle within,
+ * when the corners double their distance from its centre. */
+static void set_triangle(double p[3][2], const float origin[2], float texel_m,
+                         struct atlas_view *view)
+{
+    double side[3], around = 0, center[2] = {0, 0};
+    for (int i = 0; i < 3; i++) {
+        const double *a = p[(i + 1) % 3], *b = p[(i + 2) % 3];
+        side[i] = hypot(b[0] - a[0], b[1] - a[1]);
+        around += side[i];
+    }
+    for (int k = 0; k < 2; k++)
+        center[k] = (side[0] * p[0][k] + side[1] * p[1][k] + side[2] * p[2][k]) / around;
+    double radius = turn(p[0], p[1], p[2]) / around;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 2; k++) { /* (row, column) to (s, t), backwards to turn left there */
+            const double *corner = p[2 - i];
+            view->triangle[i][k] = origin[k] + (float)corner[1 - k] * texel_m;
+            view->triangle[i][2 + k] = (float)((corner[1 - k] - center[1 - k]) / radius);
+        }
+}
+
 /* Least squares plane of the depths over the covered texels, weighted by coverage. */
 static void fit_depth(const uint8_t (*albedo)[4], const uint16_t *depth, int width_px,
                       int height_px, float texel_m, float radius_m, struct atlas_view *view)
@@ -142,6 +218,16 @@ void atlas_outline(struct arena *arena, const uint8_t (*albedo)[4], const uint16
         }
         view->low[k] = count ? origin[k] + (float)low * texel_m : 0;
         view->high[k] = count ? origin[k] + (float)high * texel_m : 0;
+    }
+    if (count >= 3) {
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, triangle[3][2];
+        for (size_t i = 0; i < count; i++)
+            for (int k = 0; k < 2; k++) {
+                low[k] = fmin(low[k], hull[i][k]);
+                high[k] = fmax(high[k], hull[i][k]);
+            }
+        triangle_about(hull, count, (const double *)low, (const double *)high, triangle);
+        set_triangle(triangle, origin, texel_m, view);
     }
     count = hull_reduce(hull, count, ATLAS_HULL);
     for (size_t i = 0; i < ATLAS_HULL; i++) {

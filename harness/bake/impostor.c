@@ -18,6 +18,9 @@ struct sunlight {
 /* Most trees that are drawn with the polygon of ATLAS_HULL corners at a time. */
 enum { HULLS_MOST = 65536, BUFFERS = 5 };
 
+/* Fans between two flushes, at least; flushes of a draw, at most. */
+enum { FLUSH_LEAST = 2500, FLUSHES_MOST = 8 };
+
 /* The nearest of the rotations that light is computed for. */
 static float sun_step(float rotation_rad)
 {
@@ -269,10 +272,19 @@ void impostor_use(struct workspace *workspace, const struct impostor *impostor, 
 void impostor_draw(struct workspace *workspace, const struct impostor *impostor, int corners,
                    size_t fans)
 {
-    size_t offset = corners == 4 ? 0 : 6 * impostor->fans_quad;
-    if (fans > 0)
-        gl_draw_elements(workspace->gl, GL_TRIANGLES, (GLsizei)(fans * 3 * (size_t)(corners - 2)),
-                         GL_UNSIGNED_INT, offset * sizeof(uint32_t), 1, 0, 0);
+    size_t offset = corners == 4 ? 0 : 6 * impostor->fans_quad, each = 3 * (size_t)(corners - 2);
+    size_t most = fans / FLUSHES_MOST < FLUSH_LEAST ? FLUSH_LEAST : fans / FLUSHES_MOST;
+    for (size_t first = 0; first < fans; first += most) {
+        size_t count = fans - first < most ? fans - first : most;
+        if (corners == 3)
+            gl_draw_arrays(workspace->gl, GL_TRIANGLES, (GLint)(3 * first), (GLsizei)(3 * count),
+                           1);
+        else
+            gl_draw_elements(workspace->gl, GL_TRIANGLES, (GLsizei)(each * count), GL_UNSIGNED_INT,
+                             (offset + each * first) * sizeof(uint32_t), 1, 0, 0);
+        if (first + count < fans)
+            workspace->gl->Flush();
+    }
 }
 
 size_t impostor_near_count(const struct impostor *impostor, const struct view *view,

@@ -1,5 +1,5 @@
 // What impostors share: trees, pictures and light of the atlas (harness/bake/atlas.h), coverage, fog. A method adds its
-// vertex stage. VIEWS pictures are mixed in a fragment; CORNERS is 4 or 8.
+// vertex stage. VIEWS pictures are mixed in a fragment; CORNERS is 3, 4 or 8.
 uniform vec2 depth_terms;  // ndc z = x + y / distance along the view
 
 #pragma stage vertex
@@ -13,6 +13,7 @@ struct picture {
     vec4 bounds;                      // low, high
     vec4 depth_plane;
     vec2 hull[8];
+    vec4 triangle[3];  // corner, how it moves with a margin
 };
 
 struct plant {
@@ -74,6 +75,12 @@ float margin_of(plant p, float level)
 vec2 corner_of(vec2 low, vec2 high, int corner)
 {
     return vec2(corner == 1 || corner == 2 ? high.x : low.x, corner >= 2 ? high.y : low.y);
+}
+
+// A margin along both axes is up to sqrt(2) of it across a side.
+vec2 triangle_corner(picture pic, int corner, float margin)
+{
+    return pic.triangle[corner].xy + 1.4143 * margin * pic.triangle[corner].zw;
 }
 
 // Picture k of the quad: its light from the sun and its place st on the picture's plane.

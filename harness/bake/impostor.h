@@ -48,13 +48,14 @@ enum status impostor_begin(struct workspace *workspace, struct impostor *imposto
  * come. */
 void impostor_use(struct workspace *workspace, const struct impostor *impostor, GLuint program,
                   const struct view *view, size_t first);
-/* Draws fans (corners: 4 or ATLAS_HULL) with the program in use. */
+/* Draws fans (corners: 3, 4 or ATLAS_HULL) with the program in use, a few thousand at a time, so
+ * that a software GL fills some while it computes the corners of the next. */
 void impostor_draw(struct workspace *workspace, const struct impostor *impostor, int corners,
                    size_t fans);
 
 /* From this many pixels on the polygon of ATLAS_HULL corners costs less than the transparent
- * corners of a quad. */
-enum { IMPOSTOR_HULL_PX = 1500 };
+ * corners of a triangle. */
+enum { IMPOSTOR_HULL_PX = 6000 };
 
 /* How many trees at the near end of the list cover more than about area_px pixels each; no more
  * than there are hulls for, hulls_each a tree. */
