@@ -125,6 +125,7 @@ prints 'the manual page' '^\.SH EXIT STATUS' help man
 prints 'methods' '^null +GL' list methods
 prints 'scenes' '^tiny +96x72' list scenes
 prints 'metrics' '^rmse +linear' list metrics
+prints 'metrics of a path too' '^flicker-peak +linear +lower' list metrics
 prints 'plants with their triangles' '^poplar +98286 ' list plants
 prints 'the cache has a place' "^$work/cache\$" cache path
 for what in methods scenes metrics plants; do

@@ -129,13 +129,9 @@ static enum status list_scenes(struct arena *arena, struct json_out *out, struct
     return status;
 }
 
-static enum status list_metrics(struct arena *arena, struct json_out *out, struct error *error)
+static void metrics_put(const struct metric_info *metric, struct json_out *out)
 {
-    (void)arena;
-    (void)error;
-    if (!out)
-        printf("%-15s %-8s %-7s %s\n", "metric", "domain", "better", "definition");
-    for (const struct metric_info *metric = metric_table; metric->field; metric++) {
+    for (; metric->field; metric++) {
         const char *better = metric->better < 0 ? "lower" : metric->better > 0 ? "higher" : "zero";
         if (!out) {
             printf("%-15s %-8s %-7s %s\n", metric->word, metric->domain, better, metric->doc);
@@ -148,6 +144,16 @@ static enum status list_metrics(struct arena *arena, struct json_out *out, struc
         json_put_text(out, "doc", metric->doc);
         json_close(out);
     }
+}
+
+static enum status list_metrics(struct arena *arena, struct json_out *out, struct error *error)
+{
+    (void)arena;
+    (void)error;
+    if (!out)
+        printf("%-15s %-8s %-7s %s\n", "metric", "domain", "better", "definition");
+    metrics_put(metric_table, out);
+    metrics_put(flicker_table, out);
     return STATUS_OK;
 }
 

@@ -14,6 +14,14 @@ const struct metric_info metric_table[] = {
         {NULL, NULL, NULL, NULL, 0, 0},
 };
 
+const struct metric_info flicker_table[] = {
+    {"mean", "flicker", "linear", "rmse of the change from frame to frame along a path", -1,
+     offsetof(struct flicker, mean)},
+    {"peak", "flicker-peak", "linear", "the same of the worst pair of frames: popping", -1,
+     offsetof(struct flicker, peak)},
+    {NULL, NULL, NULL, NULL, 0, 0},
+};
+
 double metric_of(const struct metrics *metrics, const struct metric_info *info)
 {
     const void *field = (const char *)metrics + info->offset;

@@ -86,6 +86,7 @@ struct flicker {
     double mean, peak, floor;
     size_t peak_frame; /* the later frame of the worst pair */
 };
+extern const struct metric_info flicker_table[]; /* ends with a NULL field */
 enum status metrics_flicker(struct arena *arena, const struct frame *const *frames,
                             const struct frame *const *references, size_t count,
                             struct flicker *flicker, struct error *error);
