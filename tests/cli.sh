@@ -203,6 +203,15 @@ try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --tree
 is '--retry runs them again' "$(lines "$work/fails/cells.jsonl")" -eq 8
 try run --scene tiny --method "$plugins/bad.so:way=hang" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --timeout 0.5 --out "$work/hang" -q
 is 'a timeout is a result' "$(grep -c '"status":"timeout"' "$work/hang/cells.jsonl")" -eq 1
+"$binary" report "$work/hang" --out "$work/hang-page" -q
+replay=$(python3 -c 'import html,re,sys; print(html.unescape(re.search("<pre>[.]/treeline (run --cell .*)</pre>", open(sys.argv[1]).read())[1]))' \
+  "$work/hang-page/index.html")
+eval "timeout 30 '$binary' $replay --rounds 1 --out '$work/replayed' -q" >/dev/null 2>&1
+is 'the command of a failure fails the same way' "$(grep -c '"status":"timeout"' "$work/replayed/cells.jsonl")" -eq 1
+filter="tiny/(null|[it's])"
+try run "${good[@]}" "${fast[@]}" --rounds 1 --filter "$filter" --out "$work/quoted" -q
+eval "set -- $(python3 -c 'import json,sys; print(json.loads(open(sys.argv[1]).readline())["command"])' "$work/quoted/cells.jsonl")"
+is 'a shell reads the stored command back' "$(printf '%s\n' "$@" | grep -cxF -- "$filter")" -eq 1
 
 # 5. Interruption. The slow method takes 50 ms a frame.
 slow=(--scene tiny --method "$plugins/bad.so:way=slow" --trees 1 --size 32x24,33x24,34x24 --frame-seconds 0.2

@@ -228,6 +228,7 @@ static struct run *world_run(struct arena *arena, const char *folder)
                                           .libraries = "Mesa 22.3.6",
                                           .plan = "quick",
                                           .command = "./treeline run quick --out results/x & \"y\"",
+                                          .settings = "--timeout 60 --threads 2",
                                           .started = "2026-11-22T12:00:00Z",
                                           .cores = 2,
                                           .memory_bytes = 25.2e9,

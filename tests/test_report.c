@@ -198,7 +198,7 @@ static void test_report__failures_are_told_with_message_and_replay_command(void 
         has(page, "ran past 60 s in frame 3 &lt;&amp;&quot;quoted&quot;&gt; | 100 % of_it"));
     assert_true(has(page, "./treeline run --cell "
                           "'poplar-forest/polygons/trees=1000/lod=high/size=96x72/"
-                          "target=rgba16f/seed=1'"));
+                          "target=rgba16f/seed=1' --timeout 60 --threads 2<"));
     assert_true(has(page, "signal 11"));
     assert_true(has(page, "<span class=\"bad\">timeout</span>"));
 }

@@ -207,6 +207,7 @@ static struct provenance somewhere(void)
                                .libraries = "l",
                                .plan = "p",
                                .command = "treeline run 'p'",
+                               .settings = "--timeout 3",
                                .started = "now",
                                .cores = 2,
                                .memory_bytes = 1e10,
@@ -453,7 +454,7 @@ static void test_provenance__names_this_machine_and_build(void **state)
     struct plan plan = {.name = "p", .cells = &cell, .cells_count = 1, .rounds = 2, .hash = 3};
     struct provenance here;
     char host[256];
-    provenance_here(arena, &plan, "treeline run p", &here);
+    provenance_here(arena, &plan, "treeline run p", "", &here);
     assert_int_equal(gethostname(host, sizeof host), 0);
     assert_string_equal(here.host, host);
     assert_true(here.memory_bytes > 1e8 && here.cores >= 1);

@@ -6,6 +6,7 @@
 #include "base/plural.h"
 #include "base/progress.h"
 #include "cell/cell.h"
+#include "plan/settings.h"
 #include "report/report.h"
 #include "results/run.h"
 
@@ -33,13 +34,24 @@ static const char *folder_choose(struct arena *arena, const struct run_request *
     return folder;
 }
 
+/* A word that a shell reads back as this text. */
+static const char *shell_word(struct arena *arena, const char *text)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "-_./:=,+@%";
+    if (*text && !text[strspn(text, plain)])
+        return text;
+    const char *word = "'";
+    for (const char *quote; (quote = strchr(text, '\'')); text = quote + 1)
+        word = arena_printf(arena, "%s%.*s'\\''", word, (int)(quote - text), text);
+    return arena_printf(arena, "%s%s'", word, text);
+}
+
 static const char *command_join(struct arena *arena, int argc, char **argv)
 {
     const char *text = argv[0];
-    for (int i = 1; i < argc; i++) {
-        bool plain = *argv[i] && !strpbrk(argv[i], " '\"$`\\*?&|;<>()");
-        text = arena_printf(arena, plain ? "%s %s" : "%s '%s'", text, argv[i]);
-    }
+    for (int i = 1; i < argc; i++)
+        text = arena_printf(arena, "%s %s", text, shell_word(arena, argv[i]));
     return text;
 }
 
@@ -181,7 +193,7 @@ static enum status run_all(struct arena *arena, const struct run_request *reques
     int lock = -1;
     struct provenance provenance;
     struct rounds rounds = {.request = request, .plan = plan, .folder = folder};
-    provenance_here(arena, plan, command, &provenance);
+    provenance_here(arena, plan, command, plan_settings_command(arena, plan), &provenance);
     enum status status = run_lock(folder, &lock, error);
     if (status)
         return status;

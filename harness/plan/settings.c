@@ -66,3 +66,27 @@ enum status plan_settings_override(struct plan_settings *settings,
     }
     return STATUS_OK;
 }
+
+const char *plan_settings_command(struct arena *arena, const struct plan *plan)
+{
+    const struct {
+        const char *name, *option;
+        double value;
+    } rows[] = {
+        {"frame_seconds", "frame-seconds", plan->frame_seconds},
+        {"frames_max", "frames-max", plan->frames_max},
+        {"timeout_seconds", "timeout", plan->timeout_seconds},
+        {"memory_bytes", "memory", (double)plan->memory_bytes},
+        {"reference_error", "reference-error", plan->reference_error},
+        {"reference_samples_max", "reference-samples", plan->reference_samples_max},
+        {"threads", "threads", plan->threads},
+        {"views", "views", (double)plan->views_count},
+    };
+    const char *text = plan->backend ? arena_printf(arena, "--backend %s", plan->backend) : "";
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        for (const struct option *o = plan_settings_table; o->name; o++)
+            if (!strcmp(o->name, rows[i].name) && o->fallback != rows[i].value)
+                text = arena_printf(arena, "%s%s--%s %.15g", text, *text ? " " : "", rows[i].option,
+                                    rows[i].value);
+    return text;
+}

@@ -21,4 +21,8 @@ void plan_settings_put(struct plan_settings *settings, const struct option *opti
 enum status plan_settings_override(struct plan_settings *settings,
                                    const struct plan_request *request, struct error *error);
 
+/* The options of `treeline run` that say what a plan's settings say, where those are not the
+ * defaults: "--timeout 0.05 --threads 2"; "": none. How many rounds is left out. */
+const char *plan_settings_command(struct arena *arena, const struct plan *plan);
+
 #endif

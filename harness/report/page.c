@@ -371,7 +371,9 @@ static void put_failures(const struct page *page)
         put_safe(page, result->message);
         put(page, "</p>\n<pre>./treeline run --cell '");
         put_safe(page, result->cell.name);
-        put(page, "'</pre>\n");
+        put(page, "' ");
+        html_put(page->out, run->provenance.settings);
+        put(page, "</pre>\n");
     }
     if (failures == 0)
         put(page, "<p>None: every repetition of every cell succeeded.</p>\n");
@@ -439,7 +441,9 @@ static void put_redo(const struct page *page)
         put(page, "<p>One cell alone, by the name that the CSV gives it:</p>\n<pre>./treeline run "
                   "--cell '");
         put_safe(page, book->rows[0].seen->cell.name);
-        put(page, "'</pre>\n");
+        put(page, "' ");
+        html_put(page->out, book->run->provenance.settings);
+        put(page, "</pre>\n");
     }
     put(page, "<p>A plot, after editing its script: <code>cd plots; gnuplot NAME.gp</code>.</p>\n");
 }

@@ -43,7 +43,7 @@ static const char *now_iso(struct arena *arena)
 }
 
 void provenance_here(struct arena *arena, const struct plan *plan, const char *command,
-                     struct provenance *provenance)
+                     const char *settings, struct provenance *provenance)
 {
     struct utsname system;
     uname(&system);
@@ -60,6 +60,7 @@ void provenance_here(struct arena *arena, const struct plan *plan, const char *c
             arena_printf(arena, "%s, glibc %s", TREELINE_LIBRARIES, gnu_get_libc_version()),
         .plan = plan->name,
         .command = command,
+        .settings = settings,
         .started = now_iso(arena),
         .cores = clock_cpu_count(),
         .memory_bytes = strtod(line_value(arena, "/proc/meminfo", "MemTotal"), NULL) * 1024,

@@ -80,7 +80,7 @@ void result_init(struct result *result, const struct cell *cell, int repetition)
 /* First line of a run's file: where, what, by whom. */
 struct provenance {
     const char *host, *cpu, *kernel, *os, *compiler, *flags, *revision, *libraries, *plan, *command,
-        *started;
+        *settings, *started; /* settings: options of `run` that measure so; "": the defaults */
     int cores;
     double memory_bytes;
     uint64_t seed, plan_hash;
@@ -117,8 +117,9 @@ enum status run_append_calibration(const char *folder, const struct calibration 
  * with its number. */
 enum status run_read(struct arena *arena, const char *path, struct run **run, struct error *error);
 
-/* Fills in everything about this machine and build; command is argv joined. */
+/* Fills in everything about this machine and build; command is argv joined, settings are those of
+ * the plan as options. */
 void provenance_here(struct arena *arena, const struct plan *plan, const char *command,
-                     struct provenance *provenance);
+                     const char *settings, struct provenance *provenance);
 
 #endif

@@ -17,7 +17,8 @@
 #define PROVENANCE_TEXTS(X)                                                                        \
     X(host)                                                                                        \
     X(cpu)                                                                                         \
-    X(kernel) X(os) X(compiler) X(flags) X(revision) X(libraries) X(plan) X(command) X(started)
+    X(kernel)                                                                                      \
+    X(os) X(compiler) X(flags) X(revision) X(libraries) X(plan) X(command) X(settings) X(started)
 #define PROVENANCE_NUMBERS(X) X(memory_bytes) X(rounds) X(frame_seconds) X(reference_error)
 
 char *provenance_to_json(struct arena *arena, const struct provenance *provenance)
