@@ -167,6 +167,8 @@ refuses 'other measuring is not mixed in' 65 'frame_seconds: was measured with 0
 try run "${good[@]}" "${fast[@]}" --rounds 3 --out "$work/run/" --resume -q --json
 is 'more rounds are only the new ones' $rc -eq 0 -a "$(lines "$work/run/cells.jsonl")" -eq 4
 is 'quiet is quiet' ! -s "$work/err"
+(cd "$work" && "$binary" run --out run --resume "${good[@]}" "${fast[@]}" --rounds 3 --json --report -q >out 2>page)
+is 'the path of the page is not among the JSON' "$(cat "$work/page")" = reports/run/index.html
 if python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); assert d["cells"][0]["repetitions"]==3' "$work/out"; then
   ok 'the table as JSON'
 else

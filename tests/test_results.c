@@ -355,7 +355,8 @@ static void test_run__a_malformed_line_is_named_by_its_number(void **state)
     bad_file(arena_printf(arena, "%s\n%s\n\n%s\n", first, good, good), "cells.jsonl:3", "JSON");
     bad_file(arena_printf(arena, "%s\n{\"version\":1}\n%s\n", first, good), "cells.jsonl:2",
              "cell: is missing");
-    bad_file(arena_printf(arena, "%s\n{\"version\":3}\n", first), "cells.jsonl:2", "version 1 to 2");
+    bad_file(arena_printf(arena, "%s\n{\"version\":3}\n", first), "cells.jsonl:2",
+             "version 1 to 2");
     bad_file("{\"version\":3,\"kind\":\"treeline-run\"}\n", "cells.jsonl:1", "version 1 to 2");
     bad_file("{\"version\":1}\n", "cells.jsonl:1", "treeline-run");
     bad_file("", "no whole line", "provenance");

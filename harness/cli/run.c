@@ -223,13 +223,15 @@ static enum status plan_print(const struct plan *plan)
     return STATUS_OK;
 }
 
-static enum status report_make(struct arena *arena, const char *folder, struct error *error)
+/* Where JSON goes to stdout, the page's path goes to stderr. */
+static enum status report_make(struct arena *arena, const char *folder, bool json,
+                               struct error *error)
 {
     const char *slash = strrchr(folder, '/');
     const char *out = arena_printf(arena, "reports/%s", slash ? slash + 1 : folder);
     enum status status = report_write(folder, out, error);
     if (!status)
-        printf("%s/index.html\n", out);
+        fprintf(json ? stderr : stdout, "%s/index.html\n", out);
     return status;
 }
 
@@ -254,7 +256,7 @@ int verb_run(int argc, char **argv)
     if (finished)
         then = run_table(arena, folder, request.json, &later);
     if (finished && !then && request.report)
-        then = report_make(arena, folder, &later);
+        then = report_make(arena, folder, request.json, &later);
     arena_destroy(arena);
     if (then)
         cli_fail(&later);
