@@ -13,7 +13,7 @@ const struct calibration_info calibration_table[CALIBRATION_COUNT] = {
 #undef CALIBRATION_ROW
 };
 
-enum { REPEATS = 7, LOOPS_MAX = 1 << 16 };
+enum { REPEATS = 11, LOOPS_MAX = 1 << 16 };
 
 static double pass_seconds(const struct work *work, size_t index, int loops)
 {

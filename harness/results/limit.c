@@ -101,12 +101,12 @@ struct interval limit_triangle_rate(const struct calibration *calibration,
     return (struct interval){1 / seconds[0], 1 / seconds[2], 1 / seconds[1]};
 }
 
-/* Least time for a count of things at a rate. */
+/* Least time for a count of things at the best of a rate; to its median. */
 static struct interval least_seconds(double count, struct interval rate)
 {
     if (isnan(count) || !(rate.low > 0))
         return nothing;
-    return (struct interval){count / rate.value, count / rate.high, count / rate.low};
+    return (struct interval){count / rate.high, count / rate.high, count / rate.value};
 }
 
 static void bind(struct limit *limit, enum limit_resource resource, struct interval seconds)

@@ -23,8 +23,11 @@ enum limit_resource {
 const char *limit_word(enum limit_resource resource);
 
 struct limit {
-    enum limit_resource resource;  /* that takes longest: the binding one */
-    struct interval seconds;       /* least time of a frame by it; NaN when unknown */
+    enum limit_resource resource; /* that takes longest: the binding one */
+    /* Least time of a frame by it, NaN when unknown: at the upper end of the rate's interval, since
+     * what else the machine does can only slow a rate (so STREAM takes the best); to that at the
+     * median rate. */
+    struct interval seconds;
     struct interval fraction;      /* of the limit that is reached: seconds / frame time */
     double bounds[LIMIT_COUNT];    /* least time by each resource, s; NaN: not counted */
     double fragments_per_triangle; /* beyond one fragment a pixel, which the backdrop takes */
