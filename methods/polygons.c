@@ -41,7 +41,7 @@ static const struct option option_table[] = {
         "pruned leaves are drawn nearer to their mean radiance, as each stands for many"),
     OPTION(struct options, sift, 1, 0, 1, "",
         "triangles that meet no sample are found on the CPU and not drawn; only where GL is software, "
-        "with 1 sample a pixel and plants without textures"),
+        "with plants without textures"),
     OPTION_END,
 };
 /* clang-format on */
@@ -233,8 +233,7 @@ static void prepare_instances(struct workspace *workspace, struct state *state)
 static enum status prepare_sift(struct workspace *workspace, struct state *state)
 {
     struct gl *gl = workspace->gl;
-    bool use = state->options->sift && gl->software && state->kinds_count <= SPECIES_MAX &&
-               samples_of_word[state->options->samples] == 1;
+    bool use = state->options->sift && gl->software && state->kinds_count <= SPECIES_MAX;
     for (size_t k = 0; k < state->kinds_count && use; k++) {
         const struct mesh *mesh;
         enum status status = STATUS_OK;
@@ -532,7 +531,9 @@ static void draw_streams(struct workspace *workspace, const struct state *state)
     }
 }
 
-static void draw_sifted(struct workspace *workspace, struct state *state, const struct view *view)
+/* drawn: view with the size of what is bound. */
+static void draw_sifted(struct workspace *workspace, struct state *state, const struct view *view,
+                        const struct view *drawn)
 {
     struct gl *gl = workspace->gl;
     float focal_px = cull_focal_px(view);
@@ -562,7 +563,8 @@ static void draw_sifted(struct workspace *workspace, struct state *state, const 
             if (v == VARIANT_SIFTED + SIFT_LIT && state->kinds[k].probes_count > 0)
                 mean_uniforms(workspace, state, program, k, view);
     }
-    sift_begin(state->sift, view, state->sift_trees, list.count, state->sift_runs);
+    sift_begin(state->sift, drawn, sampling_places(state->sampling), state->sift_trees, list.count,
+               state->sift_runs);
     for (bool left = list.count > 0; left;) {
         size_t bytes = sift_vertices_count(state->sift) * sizeof(struct sift_vertex);
         struct sift_vertex *vertices =
@@ -585,9 +587,9 @@ static enum status draw(struct workspace *workspace, void *state, const struct v
         return status;
     backdrop_draw(workspace, own->backdrop, &drawn);
     if (own->sift)
-        draw_sifted(workspace, own, view);
-    else
-        draw_instanced(workspace, own, view); /* of the picture's size, to which error_px refers */
+        draw_sifted(workspace, own, view, &drawn);
+    else /* error_px refers to the picture's size */
+        draw_instanced(workspace, own, view);
     sampling_end(workspace, own->sampling, target);
     return gl_check(workspace->gl, "polygons", workspace->error);
 }

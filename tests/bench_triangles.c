@@ -1,10 +1,11 @@
 /* Triangles a second of the polygons method beside what the driver can do: the same mesh drawn
- * bare, and culled by its facing or by the frustum, in turns.
+ * bare with as many samples a pixel, and culled by the frustum, in turns.
  *
  * Beyond 200 million triangles the bare draws are left out.
  *
  *     bench_triangles [scene [trees [lod [rounds [method options]]]]]      poplar-forest 100 high 9
  */
+#include "bake/sampling.h"
 #include "base/arena.h"
 #include "base/clock.h"
 #include "method/method.h"
@@ -47,6 +48,7 @@ struct bench {
     void *states[2]; /* of polygons and null */
     const struct method *methods[2];
     GLuint program;
+    struct sampling *sampling; /* of the bare draws */
     size_t species_count;
     struct bare { /* a species */
         GLuint array;
@@ -120,8 +122,9 @@ static enum status open_bare(struct bench *bench, uint32_t species, struct error
 static void draw_bare(struct bench *bench, bool outside)
 {
     struct gl *gl = bench->gl;
-    gl->BindFramebuffer(GL_FRAMEBUFFER, bench->target.framebuffer);
-    gl->Viewport(0, 0, bench->target.width_px, bench->target.height_px);
+    struct view drawn;
+    sampling_begin(&bench->workspace, bench->sampling, &bench->target, &bench->view, &drawn);
+    gl->Viewport(0, 0, drawn.width_px, drawn.height_px);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthMask(GL_TRUE);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -134,6 +137,7 @@ static void draw_bare(struct bench *bench, bool outside)
         gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)bench->bare[s].corners, GL_UNSIGNED_INT, 0,
                          (GLsizei)bench->bare[s].trees, 0, 0);
     }
+    sampling_end(&bench->workspace, bench->sampling, &bench->target);
 }
 
 /* Seconds of one frame. */
@@ -212,6 +216,10 @@ static enum status run(struct bench *bench, int argc, char **argv, struct error 
                        &bench->target, error);
     for (int m = 0; m < 2 && !status; m++)
         status = open_method(bench, m, argc > 5 && m == POLYGONS ? argv[5] : NULL, error);
+    const char *samples = argc > 5 ? strstr(argv[5], "samples=") : NULL;
+    if (!status)
+        status = sampling_prepare(
+            &bench->workspace, samples ? atoi(samples + strlen("samples=")) : 1, &bench->sampling);
     bench->species_count = scene->species_count;
     bench->bare = ARENA_ARRAY(bench->arena, struct bare, scene->species_count);
     for (uint32_t s = 0; s < scene->species_count && !status; s++)

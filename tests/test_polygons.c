@@ -440,7 +440,7 @@ static void test_polygons__a_far_tree_costs_two_triangles_and_keeps_its_cover(vo
     view_look_at(scene, eye, target, &view);
     struct setting setting = {
         .method = "polygons", .effects = EFFECTS, .lod = LOD_AUTO, .format = TARGET_RGBA32F};
-    setting.options = "samples=16";
+    setting.options = "samples=16,sift=off";
     struct picture picture = picture_draw(arena, scene, &view, &setting);
     assert_int_equal(picture.triangles, 2 * TREES + 2); /* sky, and the end of 16 samples */
     assert_true(picture.draw_calls <= 3);

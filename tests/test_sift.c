@@ -49,16 +49,22 @@ static void compare(const struct picture *a, const struct picture *b, size_t all
 static void test_sift__no_level_of_a_forest_looks_other_than_with_every_triangle(void **state)
 {
     (void)state;
+    static const char *const sifted_options[] = {"sift=on", "sift=on,samples=4",
+                                                 "sift=on,samples=16"};
+    static const char *const all_options[] = {"sift=off", "sift=off,samples=4",
+                                              "sift=off,samples=16"};
     struct arena *arena = arena_create(0);
     struct scene *scene = forest(arena, 12);
     struct view view;
-    for (int i = 0; i < 3; i++) {
-        static const enum lod lods[] = {LOD_HIGH, LOD_AUTO, LOD_LOW};
+    for (int run = 0; run < 5; run++) {
+        static const enum lod lods[] = {LOD_HIGH, LOD_AUTO, LOD_LOW, LOD_HIGH, LOD_AUTO};
+        static const int samples[] = {0, 0, 0, 1, 2};
+        int i = run % 3;
         view_at(scene, 0.5 * i, &view);
-        struct picture sifted = draw(arena, scene, &view, lods[i], "sift=on");
-        struct picture all = draw(arena, scene, &view, lods[i], "sift=off");
+        struct picture sifted = draw(arena, scene, &view, lods[run], sifted_options[samples[run]]);
+        struct picture all = draw(arena, scene, &view, lods[run], all_options[samples[run]]);
         compare(&sifted, &all, 8);
-        assert_true(2 * sifted.triangles < all.triangles || lods[i] != LOD_HIGH);
+        assert_true(2 * sifted.triangles < all.triangles || lods[run] != LOD_HIGH);
     }
     arena_destroy(arena);
 }
@@ -93,9 +99,11 @@ static struct sift_set *leaf(struct arena *arena, float size)
     return sift_set_create(arena, vertices, 1, NULL, NULL);
 }
 
+static const struct sampling_places middle = {1, {{0.5f, 0.5f}}};
+
 /* Triangles left of a set for trees, with room for the least. */
 static size_t left_of(struct arena *arena, const struct scene *scene, const struct view *view,
-                      const struct sift_set *set, int threads)
+                      const struct sampling_places *places, const struct sift_set *set, int threads)
 {
     struct sift_run run = {.set = set, .kept = (float)set->count, .growth = 1};
     struct sift_tree *trees = ARENA_ARRAY(arena, struct sift_tree, scene->instances_count);
@@ -105,12 +113,29 @@ static size_t left_of(struct arena *arena, const struct scene *scene, const stru
     struct sift_vertex *vertices =
         ARENA_ARRAY(arena, struct sift_vertex, sift_vertices_count(sift));
     size_t left = 0;
-    sift_begin(sift, view, trees, scene->instances_count, &run);
+    sift_begin(sift, view, places, trees, scene->instances_count, &run);
     while (sift_fill(sift, vertices))
         for (int stream = 0; stream < SIFT_STREAMS; stream++)
             for (int thread = 0; thread < sift_threads(sift); thread++)
                 left += sift_left(sift, stream, thread).count / 3;
     return left;
+}
+
+/* Triangles `size_px` wide and high at a depth of 101 m. */
+static void expect_share(const struct scene *scene, const struct view *view,
+                         const struct sampling_places *places, double size_px, int threads,
+                         double slack)
+{
+    struct arena *arena = arena_create(0);
+    float pixel_m = 100 * 2 * tanf(0.4f) / HEIGHT;
+    double want = places->count * 0.5 * size_px * size_px;
+    size_t left =
+        left_of(arena, scene, view, places, leaf(arena, (float)size_px * pixel_m), threads);
+    double share = (double)left / (double)scene->instances_count;
+    arena_destroy(arena);
+    if (!(share > 0.95 * want && share < slack * want))
+        fail_msg("%d samples, %d threads: a share of %g is left, not %g", places->count, threads,
+                 share, want);
 }
 
 static void test_sift__small_triangles_are_left_as_often_as_they_meet_a_sample(void **state)
@@ -134,16 +159,13 @@ static void test_sift__small_triangles_are_left_as_often_as_they_meet_a_sample(v
     float eye[3] = {0, 0, depth_m + 1}, target[3] = {0, 0, 0};
     struct view view;
     view_look_at(scene, eye, target, &view);
-    for (int threads = 1; threads <= 3; threads++) {
-        double area_px = 0.5 * 0.36; /* of a triangle 0.6 px wide and high */
-        struct arena *passing = arena_create(0);
-        size_t left = left_of(passing, scene, &view, leaf(passing, 0.6f * pixel_m), threads);
-        arena_destroy(passing);
-        /* the chance that a sample lies in it is its area; a rounding margin adds a few per cent */
-        double share = (double)left / TREES;
-        if (!(share > 0.97 * area_px && share < 1.15 * area_px))
-            fail_msg("%d threads: a share of %g is left, not %g", threads, share, area_px);
-    }
+    /* the chance that a sample lies in a triangle is its area; a rounding margin adds to that */
+    for (int threads = 1; threads <= 3; threads++)
+        expect_share(scene, &view, &middle, 0.6, threads, 1.15);
+    /* none of these four is within 0.24 px of another, upright or across: one at most is met */
+    static const struct sampling_places four = {
+        4, {{0.375f, 0.125f}, {0.875f, 0.375f}, {0.125f, 0.625f}, {0.625f, 0.875f}}};
+    expect_share(scene, &view, &four, 0.24, 2, 1.4);
     arena_destroy(arena);
 }
 
@@ -162,15 +184,15 @@ static void test_sift__what_a_nearer_triangle_covers_is_dropped(void **state)
     for (int i = 0; i < 3; i++)
         scene->instances[i] = (struct instance){{0, 0, i == 1 ? -1 : 0}, 0, 1, 0};
     scene->instances_count = 1;
-    size_t one = left_of(arena, scene, &view, leaf(arena, 4 * pixel_m), 2);
+    size_t one = left_of(arena, scene, &view, &middle, leaf(arena, 4 * pixel_m), 2);
     scene->instances_count =
         2; /* the second stands a metre behind: smaller, in the first's middle */
-    size_t two = left_of(arena, scene, &view, leaf(arena, 4 * pixel_m), 2);
+    size_t two = left_of(arena, scene, &view, &middle, leaf(arena, 4 * pixel_m), 2);
     assert_true(one >= 1);
     struct instance nearer = scene->instances[0];
     scene->instances[0] = scene->instances[1];
     scene->instances[1] = nearer; /* from far to near nothing is known yet */
-    size_t both = left_of(arena, scene, &view, leaf(arena, 4 * pixel_m), 2);
+    size_t both = left_of(arena, scene, &view, &middle, leaf(arena, 4 * pixel_m), 2);
     assert_true(both > two);
     arena_destroy(arena);
 }

@@ -8,6 +8,7 @@ struct sampling {
     int side;          /* texels of the twin along a pixel's side */
     GLuint program, no_vertices;
     struct target twin;
+    struct sampling_places places;
 };
 
 enum status sampling_prepare(struct workspace *workspace, int samples, struct sampling **sampling)
@@ -16,6 +17,7 @@ enum status sampling_prepare(struct workspace *workspace, int samples, struct sa
     struct sampling *made = *sampling = ARENA_NEW(workspace->arena, struct sampling);
     made->side = samples > gl->samples_max ? 2 : 1;
     made->samples_texel = samples / (made->side * made->side);
+    made->places = (struct sampling_places){.count = made->samples_texel, .at = {{0.5f, 0.5f}}};
     if (made->side == 1)
         return STATUS_OK;
     made->no_vertices = gl_vertex_array(gl);
@@ -43,7 +45,14 @@ enum status sampling_begin(struct workspace *workspace, struct sampling *samplin
             gl_target_multisample(gl, &enlarged, sampling->samples_texel, twin, workspace->error);
     }
     gl->BindFramebuffer(GL_FRAMEBUFFER, twin->framebuffer);
+    for (int i = 0; i < sampling->places.count && status == STATUS_OK; i++)
+        gl->GetMultisamplefv(GL_SAMPLE_POSITION, (GLuint)i, sampling->places.at[i]);
     return status;
+}
+
+const struct sampling_places *sampling_places(const struct sampling *sampling)
+{
+    return &sampling->places;
 }
 
 void sampling_end(struct workspace *workspace, const struct sampling *sampling,

@@ -4,6 +4,14 @@
 
 #include "method/method.h"
 
+enum { SAMPLING_PLACES_MAX = 16 };
+
+/* Where the samples of a texel lie in it, from its bottom left corner, in [0, 1]. */
+struct sampling_places {
+    int count;
+    float at[SAMPLING_PLACES_MAX][2];
+};
+
 struct sampling;
 
 /* samples: 1 draws into the target itself; 4 into a multisampled twin; 16 too where the driver has
@@ -16,6 +24,8 @@ enum status sampling_prepare(struct workspace *workspace, int samples, struct sa
 enum status sampling_begin(struct workspace *workspace, struct sampling *sampling,
                            const struct target *target, const struct view *view,
                            struct view *drawn);
+/* Of each texel of what is bound. */
+const struct sampling_places *sampling_places(const struct sampling *sampling);
 /* Averages what was drawn into target. */
 void sampling_end(struct workspace *workspace, const struct sampling *sampling,
                   const struct target *target);

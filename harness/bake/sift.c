@@ -118,22 +118,22 @@ static void share_rows(struct sift *sift, const struct view *view)
     }
 }
 
-void sift_begin(struct sift *sift, const struct view *view, const struct sift_tree *trees,
-                size_t trees_count, const struct sift_run *runs)
+void sift_begin(struct sift *sift, const struct view *view, const struct sampling_places *places,
+                const struct sift_tree *trees, size_t trees_count, const struct sift_run *runs)
 {
     struct sift_screen *screen = &sift->screen;
-    size_t pixels = (size_t)view->width_px * (size_t)view->height_px;
-    if (pixels > sift->depths_room) {
-        screen->depths_m = ARENA_ARRAY(sift->arena, float, pixels);
-        sift->depths_room = pixels;
+    size_t samples = (size_t)view->width_px * (size_t)view->height_px * (size_t)places->count;
+    if (samples > sift->depths_room) {
+        screen->depths_m = ARENA_ARRAY(sift->arena, float, samples);
+        sift->depths_room = samples;
     }
-    sift_screen_set(screen, view);
+    sift_screen_set(screen, view, places);
     sift->trees = trees;
     sift->trees_count = trees_count;
     sift->runs = runs;
     share_rows(sift, view);
 #pragma omp parallel for num_threads(sift->threads)
-    for (size_t i = 0; i < pixels; i++)
+    for (size_t i = 0; i < samples; i++)
         screen->depths_m[i] = INFINITY;
 }
 

@@ -7,11 +7,12 @@
  * doi:10.2312/hpg.20161189 (a depth buffer of the CPU's own). Departure: both work on blocks of
  * pixels; here the depth of each sample is kept, as most triangles meet one at most.
  *
- * One sample a pixel, at its centre. Whatever is dropped would not have changed the picture; what
- * is left is drawn by the rasteriser as ever. */
+ * Whatever is dropped would not have changed the picture; what is left is drawn by the rasteriser
+ * as ever. */
 #ifndef TREELINE_BAKE_SIFT_H
 #define TREELINE_BAKE_SIFT_H
 
+#include "bake/sampling.h"
 #include "base/arena.h"
 #include "scene/scene.h"
 
@@ -60,9 +61,10 @@ struct sift;
 /* triangles_room: of each stream of each thread that fit at a time, at least 4096. */
 struct sift *sift_create(struct arena *arena, int threads, size_t triangles_room);
 
-/* Begins a picture. trees are best sorted from near to far; trees and runs must last. */
-void sift_begin(struct sift *sift, const struct view *view, const struct sift_tree *trees,
-                size_t trees_count, const struct sift_run *runs);
+/* Begins a picture with the samples of `places` in each of its pixels. trees are best sorted from
+ * near to far; trees and runs must last. */
+void sift_begin(struct sift *sift, const struct view *view, const struct sampling_places *places,
+                const struct sift_tree *trees, size_t trees_count, const struct sift_run *runs);
 
 /* Fills `vertices` (room for sift_vertices_count) until it is full or all is done. Returns false
  * when nothing was left to do. Then stream s has spans[s][t] for each thread t. */

@@ -12,8 +12,9 @@ struct sift_screen {
     float rows[3][4];
     int width_px, height_px;
     float near_m;
-    float focal_px;  /* pixels a metre at a depth of a metre, anywhere in the picture, at most */
-    float *depths_m; /* height x width, from the bottom: of the nearest triangle over each sample */
+    float focal_px; /* pixels a metre at a depth of a metre, anywhere in the picture, at most */
+    struct sampling_places places;
+    float *depths_m; /* height x width x samples, from the bottom: of what is nearest over each */
 };
 
 /* One thread at one tree. */
@@ -27,7 +28,8 @@ struct sift_work {
     float rows[3][4]; /* from the plant to the screen */
 };
 
-void sift_screen_set(struct sift_screen *screen, const struct view *view);
+void sift_screen_set(struct sift_screen *screen, const struct view *view,
+                     const struct sampling_places *places);
 void sift_project(const struct sift_screen *screen, const float world_m[3], float projected[3]);
 
 /* Whether the tree may meet the band's rows; where `look` is set, any sample that nothing nearer

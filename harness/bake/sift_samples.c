@@ -7,11 +7,13 @@
 
 /* A rasteriser rounds corners to 1/256 px, and its sums are rounded otherwise than ours. */
 static const float margin_px = 1.0f / 128;
-/* Samples that a triangle may meet and still be looked at one by one. */
+/* Samples of each place that a triangle may meet and still be looked at one by one. */
 enum { SAMPLES_MAX = 64 };
 
-void sift_screen_set(struct sift_screen *screen, const struct view *view)
+void sift_screen_set(struct sift_screen *screen, const struct view *view,
+                     const struct sampling_places *places)
 {
+    screen->places = *places;
     screen->width_px = view->width_px;
     screen->height_px = view->height_px;
     screen->near_m = view->near_m;
@@ -46,27 +48,62 @@ static inline float most(float a, float b)
     return a > b ? a : b;
 }
 
-/* The samples (k stands for k + 0.5) that an extent of positive numbers may meet. */
-static inline int first_sample(float low)
-{
-    return (int)(low + (0.5f - margin_px));
-}
-
-static inline int last_sample(float high)
-{
-    return (int)(high + (0.5f + margin_px)) - 1;
-}
-
-struct box {
-    int x0, x1, y0, y1; /* samples, inclusive */
+/* On the screen, px. */
+struct extent {
+    float x0, x1, y0, y1;
 };
 
-static bool box_is_hidden(const struct sift_screen *screen, const struct box *box, float depth_m)
+/* Samples of one place, one a pixel, inclusive. */
+struct box {
+    int x0, x1, y0, y1;
+};
+
+/* Pixels low..high whose samples, `place` right of their borders, an extent within [0, end] may
+ * meet. */
+static inline int first_sample(float low, float place)
+{
+    return (int)(low + (1 - place - margin_px));
+}
+
+static inline int last_sample(float high, float place, int end)
+{
+    int last = (int)(high + (1 - place + margin_px)) - 1;
+    return last < end ? last : end - 1;
+}
+
+/* The band's samples of a place that an extent may meet; false: none. */
+static inline bool box_of(const struct sift_work *work, const struct extent *extent,
+                          const float place[2], struct box *box)
+{
+    const struct sift_screen *screen = work->screen;
+    float right = (float)screen->width_px;
+    box->x0 = first_sample(most(extent->x0, 0), place[0]);
+    box->x1 = last_sample(least(extent->x1, right), place[0], screen->width_px);
+    box->y0 = first_sample(most(extent->y0, work->low_row), place[1]);
+    box->y1 = last_sample(least(extent->y1, work->high_row), place[1], (int)work->high_row);
+    return box->x0 <= box->x1 && box->y0 <= box->y1;
+}
+
+/* What box_of asks of an extent. */
+static inline bool meets_band(const struct sift_work *work, const struct extent *extent)
+{
+    return extent->x1 >= 0 && extent->x0 <= (float)work->screen->width_px &&
+           extent->y1 >= work->low_row && extent->y0 <= work->high_row;
+}
+
+static inline float *depths_at(const struct sift_screen *screen, int row, int place)
+{
+    size_t first = (size_t)row * (size_t)screen->width_px;
+    return screen->depths_m + first * (size_t)screen->places.count + place;
+}
+
+static bool box_is_hidden(const struct sift_screen *screen, int place, const struct box *box,
+                          float depth_m)
 {
     for (int y = box->y0; y <= box->y1; y++) {
-        const float *row = screen->depths_m + (size_t)y * (size_t)screen->width_px;
+        const float *row = depths_at(screen, y, place);
         for (int x = box->x0; x <= box->x1; x++)
-            if (row[x] >= depth_m)
+            if (row[x * screen->places.count] >= depth_m)
                 return false;
     }
     return true;
@@ -94,7 +131,8 @@ bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, 
     const struct instance *instance = tree->instance;
     if (!look)
         return sphere_seen(work, tree);
-    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, near_m = INFINITY;
+    struct extent extent = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    float near_m = INFINITY;
     for (int corner = 0; corner < 8; corner++) {
         float radius = instance->scale * tree->radius_m, p[3], world[3];
         world[0] = instance->position_m[0] + (corner & 1 ? radius : -radius);
@@ -105,21 +143,20 @@ bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, 
         if (!(p[2] > screen->near_m))
             return true;
         near_m = least(near_m, p[2]);
-        for (int axis = 0; axis < 2; axis++) {
-            low[axis] = least(low[axis], p[axis] / p[2]);
-            high[axis] = most(high[axis], p[axis] / p[2]);
-        }
+        extent.x0 = least(extent.x0, p[0] / p[2]);
+        extent.x1 = most(extent.x1, p[0] / p[2]);
+        extent.y0 = least(extent.y0, p[1] / p[2]);
+        extent.y1 = most(extent.y1, p[1] / p[2]);
     }
-    struct box box = {
-        first_sample(most(low[0], 0)), last_sample(least(high[0], (float)screen->width_px)),
-        first_sample(most(low[1], work->low_row)), last_sample(least(high[1], work->high_row))};
-    box.x0 = box.x0 < 0 ? 0 : box.x0;
-    box.y0 = box.y0 < (int)work->low_row ? (int)work->low_row : box.y0;
-    box.x1 = box.x1 < screen->width_px ? box.x1 : screen->width_px - 1;
-    box.y1 = box.y1 < (int)work->high_row ? box.y1 : (int)work->high_row - 1;
-    if (!(box.x0 <= box.x1 && box.y0 <= box.y1))
+    if (!meets_band(work, &extent))
         return false;
-    return !box_is_hidden(screen, &box, near_m);
+    for (int place = 0; place < screen->places.count; place++) {
+        struct box box;
+        if (box_of(work, &extent, screen->places.at[place], &box) &&
+            !box_is_hidden(screen, place, &box, near_m))
+            return true;
+    }
+    return false;
 }
 
 void sift_tree_set(struct sift_work *work, const struct instance *instance)
@@ -143,20 +180,21 @@ void sift_tree_set(struct sift_work *work, const struct instance *instance)
 
 /* Marks the elements whose spheres may meet a sample of the band; branch-free. */
 static void mark_block(const struct sift_work *work, const struct sift_set *set, size_t at,
-                       size_t count, float growth, uint8_t *restrict marks)
+                       size_t count, float growth, const float place[2], uint8_t *restrict marks)
 {
     const float *restrict x = set->x + at, *restrict y = set->y + at;
     const float *restrict z = set->z + at, *restrict radius = set->radius_m + at;
     const float(*m)[4] = work->rows;
     float near_m = work->screen->near_m, focal = work->screen->focal_px * work->scale * growth;
     float right = (float)work->screen->width_px, low = work->low_row, high = work->high_row;
-    float scale = work->scale * growth;
+    float scale = work->scale * growth, shift_x = 1 - place[0], shift_y = 1 - place[1];
     for (size_t i = 0; i < count; i++) {
         float w = m[2][0] * x[i] + m[2][1] * y[i] + m[2][2] * z[i] + m[2][3];
         float inverse = 1 / w, r = radius[i] * focal * inverse + margin_px;
         float px = (m[0][0] * x[i] + m[0][1] * y[i] + m[0][2] * z[i] + m[0][3]) * inverse;
         float py = (m[1][0] * x[i] + m[1][1] * y[i] + m[1][2] * z[i] + m[1][3]) * inverse;
-        float x0 = px - r + 0.5f, x1 = px + r + 0.5f, y0 = py - r + 0.5f, y1 = py + r + 0.5f;
+        float x0 = px - r + shift_x, x1 = px + r + shift_x;
+        float y0 = py - r + shift_y, y1 = py + r + shift_y;
         /* whole numbers in (x0, x1] are samples; the first one stands right of the left border */
         x0 = x0 > 0.5f ? x0 : 0.5f;
         y0 = y0 > low + 0.5f ? y0 : low + 0.5f;
@@ -168,7 +206,7 @@ static void mark_block(const struct sift_work *work, const struct sift_set *set,
         y0 = y0 < high + 1 ? y0 : high + 1;
         int meets = ((int)x1 > (int)x0) & ((int)y1 > (int)y0);
         int close = w < near_m + 8 * scale * radius[i];
-        marks[i] = (uint8_t)(meets | close);
+        marks[i] |= (uint8_t)(meets | close);
     }
 }
 
@@ -177,56 +215,85 @@ struct projected {
     float x[3], y[3], w[3];
 };
 
-/* The band's samples that the triangle may meet; false: none. */
-static bool box_of(const struct sift_work *work, const struct projected *p, struct box *box)
+static struct extent extent_of(const struct projected *p)
 {
-    float x0 = least(least(p->x[0], p->x[1]), p->x[2]), x1 = most(most(p->x[0], p->x[1]), p->x[2]);
-    float y0 = least(least(p->y[0], p->y[1]), p->y[2]), y1 = most(most(p->y[0], p->y[1]), p->y[2]);
-    float right = (float)work->screen->width_px;
-    if (!(x1 >= 0 && x0 <= right && y1 >= work->low_row && y0 <= work->high_row))
-        return false;
-    box->x0 = first_sample(most(x0, 0.25f));
-    box->x1 = last_sample(least(x1, right - 0.25f));
-    box->y0 = first_sample(most(y0, work->low_row + 0.25f));
-    box->y1 = last_sample(least(y1, work->high_row - 0.25f));
-    return box->x0 <= box->x1 && box->y0 <= box->y1;
+    return (struct extent){
+        least(least(p->x[0], p->x[1]), p->x[2]), most(most(p->x[0], p->x[1]), p->x[2]),
+        least(least(p->y[0], p->y[1]), p->y[2]), most(most(p->y[0], p->y[1]), p->y[2])};
 }
 
-/* Whether the triangle may change a sample; depths are brought up to date with what it surely
- * covers. */
-static bool triangle_seen(const struct sift_work *work, const struct projected *p,
-                          const struct box *box, bool closed)
+/* Inside where x dy - y dx of all three edges, from their first corners on, is negative. */
+struct edges {
+    float dx[3], dy[3], slack[3];
+    float near_m, far_m;
+};
+
+/* Whether the triangle may change a sample of a place; depths are brought up to date with what it
+ * surely covers. */
+static inline bool place_seen(const struct sift_screen *screen, const struct projected *p,
+                              const struct edges *edges, int place, const struct box *box)
 {
-    const struct sift_screen *screen = work->screen;
-    float area =
-        (p->x[1] - p->x[0]) * (p->y[2] - p->y[0]) - (p->x[2] - p->x[0]) * (p->y[1] - p->y[0]);
-    if (closed && area < 0)
-        return false;
-    float sign = area < 0 ? -1.0f : 1.0f, dx[3], dy[3], slack[3];
-    for (int i = 0; i < 3; i++) {
-        int j = i == 2 ? 0 : i + 1;
-        dx[i] = sign * (p->x[j] - p->x[i]);
-        dy[i] = sign * (p->y[j] - p->y[i]);
-        slack[i] = margin_px * (fabsf(dx[i]) + fabsf(dy[i]));
-    }
-    float near_m = least(least(p->w[0], p->w[1]), p->w[2]) * (1 - 2e-5f);
-    float far_m = most(most(p->w[0], p->w[1]), p->w[2]);
+    const float *at = screen->places.at[place];
+    int step = screen->places.count;
     bool seen = false;
     for (int y = box->y0; y <= box->y1; y++) {
-        float *row = screen->depths_m + (size_t)y * (size_t)screen->width_px;
+        float *row = depths_at(screen, y, place);
         for (int x = box->x0; x <= box->x1; x++) {
             bool meets = true, covers = true;
+            float *depth = row + x * step;
             for (int i = 0; i < 3; i++) {
-                float edge =
-                    dx[i] * ((float)y + 0.5f - p->y[i]) - dy[i] * ((float)x + 0.5f - p->x[i]);
-                meets &= edge >= -slack[i];
-                covers &= edge > slack[i];
+                float edge = edges->dx[i] * ((float)y + at[1] - p->y[i]) -
+                             edges->dy[i] * ((float)x + at[0] - p->x[i]);
+                meets &= edge >= -edges->slack[i];
+                covers &= edge > edges->slack[i];
             }
-            seen |= meets & (near_m <= row[x]);
-            if (covers && far_m < row[x])
-                row[x] = far_m;
+            seen |= meets & (edges->near_m <= *depth);
+            if (covers && edges->far_m < *depth)
+                *depth = edges->far_m;
         }
     }
+    return seen;
+}
+
+static struct edges edges_of(const struct projected *p, float area)
+{
+    float sign = area < 0 ? -1.0f : 1.0f;
+    struct edges edges = {.near_m = least(least(p->w[0], p->w[1]), p->w[2]) * (1 - 2e-5f),
+                          .far_m = most(most(p->w[0], p->w[1]), p->w[2])};
+    for (int i = 0; i < 3; i++) {
+        int j = i == 2 ? 0 : i + 1;
+        edges.dx[i] = sign * (p->x[j] - p->x[i]);
+        edges.dy[i] = sign * (p->y[j] - p->y[i]);
+        edges.slack[i] = margin_px * (fabsf(edges.dx[i]) + fabsf(edges.dy[i]));
+    }
+    return edges;
+}
+
+/* Whether the triangle may change the picture. */
+static bool triangle_seen(const struct sift_work *work, const struct projected *p, bool closed)
+{
+    const struct sift_screen *screen = work->screen;
+    struct extent extent = extent_of(p);
+    struct box boxes[SAMPLING_PLACES_MAX];
+    bool some[SAMPLING_PLACES_MAX], any = false, seen = false;
+    if (!meets_band(work, &extent))
+        return false;
+    for (int i = 0; i < screen->places.count; i++) {
+        struct box *box = &boxes[i];
+        some[i] = box_of(work, &extent, screen->places.at[i], box);
+        any |= some[i];
+        if (some[i] &&
+            (size_t)(box->x1 - box->x0 + 1) * (size_t)(box->y1 - box->y0 + 1) > SAMPLES_MAX)
+            return true;
+    }
+    float area =
+        (p->x[1] - p->x[0]) * (p->y[2] - p->y[0]) - (p->x[2] - p->x[0]) * (p->y[1] - p->y[0]);
+    if (!any || (closed && area < 0))
+        return false;
+    struct edges edges = edges_of(p, area);
+    for (int i = 0; i < screen->places.count; i++)
+        if (some[i])
+            seen |= place_seen(screen, p, &edges, i, &boxes[i]);
     return seen;
 }
 
@@ -265,7 +332,6 @@ static void sift_element(struct sift_work *work, const struct sift_run *run, siz
     for (uint32_t t = set->first[element]; t < set->first[element + 1]; t++) {
         const struct sift_vertex *corners = set->vertices + 3 * (size_t)t;
         struct projected p;
-        struct box box;
         bool close = false;
         if (run->stout && !(corners[0].normal[3] & 1) && corners[0].albedo[3] >= run->stout)
             continue;
@@ -280,13 +346,8 @@ static void sift_element(struct sift_work *work, const struct sift_run *run, siz
             p.y[i] = (m[1][0] * x + m[1][1] * y + m[1][2] * z + m[1][3]) * inverse;
             close |= !(p.w[i] > work->screen->near_m);
         }
-        if (!close) {
-            if (!box_of(work, &p, &box))
-                continue;
-            size_t samples = (size_t)(box.x1 - box.x0 + 1) * (size_t)(box.y1 - box.y0 + 1);
-            if (samples <= SAMPLES_MAX && !triangle_seen(work, &p, &box, set->closed))
-                continue;
-        }
+        if (!close && !triangle_seen(work, &p, set->closed))
+            continue;
         put_triangle(work, corners, center, size, run->growth);
     }
 }
@@ -295,7 +356,8 @@ void sift_block(struct sift_work *work, const struct sift_run *run, size_t at, s
                 size_t count)
 {
     _Alignas(64) uint8_t marks[SIFT_BLOCK] = {0};
-    mark_block(work, run->set, at, count, run->growth, marks);
+    for (int i = 0; i < work->screen->places.count; i++)
+        mark_block(work, run->set, at, count, run->growth, work->screen->places.at[i], marks);
     for (size_t eight = 0; eight < count; eight += 8) {
         uint64_t any;
         memcpy(&any, marks + eight, sizeof any);
