@@ -20,12 +20,8 @@ static double flip_of(const struct row *row)
 
 static void put_method(const struct book *book, const struct row *row, FILE *out)
 {
-    fprintf(
-        out,
-        "<span class=\"name\"><svg class=\"mark\" viewBox=\"-1.5 -1.5 3 3\" aria-hidden=\"true\" "
-        "style=\"color:var(--%s)\">%s</svg>",
-        tint_variable(tint_method(book, row->method_index)), symbol_html(book, row->method_index));
-    html_put(out, row->label);
+    fputs("<span class=\"name\">", out);
+    html_put_label(out, book, row);
     fputs("</span>", out);
 }
 
@@ -35,9 +31,7 @@ static void put_speed(const struct row *row, FILE *out)
             number_plain(row->values[COLUMN_fps], 3).text);
 }
 
-/* The group to speak about: a front of the three points that are told, then the most trees, then
- * the most cells. */
-static const struct group *main_group(const struct book *book, size_t *front, size_t *front_count)
+const struct group *answer_group(const struct book *book, size_t *front, size_t *front_count)
 {
     const struct group *chosen = NULL;
     size_t best = 0;
@@ -96,7 +90,7 @@ static void put_clause(const struct book *book, const struct group *group, const
 void answer_headline(const struct book *book, FILE *out)
 {
     size_t *front = ARENA_ARRAY(book->arena, size_t, book->rows_count + 1), count;
-    const struct group *group = main_group(book, front, &count);
+    const struct group *group = answer_group(book, front, &count);
     if (!group) {
         fputs("No cell has both a frame time and an error, so nothing can be said about which "
               "method is the fastest.",
@@ -119,16 +113,22 @@ void answer_headline(const struct book *book, FILE *out)
     fprintf(out, ". No error below %s was reached.", number_plain(flip_of(last), 2).text);
 }
 
+/* Rows of the tables of answers. */
+enum { GROUPS_MAX = 60, SERIES_MAX = 60 };
+
 void answer_fronts(const struct book *book, FILE *out)
 {
     fputs("<div class=\"scroll\"><table class=\"fronts\"><thead><tr><th scope=\"col\">scene</th>"
           "<th scope=\"col\" class=\"n\">trees</th><th scope=\"col\">the fastest, from any error "
           "down to the lowest: frame time at FLIP error</th></tr></thead><tbody>\n",
           out);
-    size_t *front = ARENA_ARRAY(book->arena, size_t, book->rows_count + 1);
-    for (size_t g = 0; g < book->groups_count; g++) {
+    size_t *front = ARENA_ARRAY(book->arena, size_t, book->rows_count + 1), told = 0;
+    for (size_t g = 0; g < book->groups_count && told < GROUPS_MAX; g++) {
         const struct group *group = &book->groups[g];
         size_t count = book_front(book, group, front);
+        if (book->groups_count > GROUPS_MAX && !book_is_overview(book, g))
+            continue;
+        told++;
         fputs("<tr><th scope=\"row\" class=\"scene\">", out);
         html_put(out, book->families[group->family]);
         fprintf(out, "</th><td class=\"n\" data-unit=\" tree%s\">%s</td><td>", plural(group->trees),
@@ -145,6 +145,12 @@ void answer_fronts(const struct book *book, FILE *out)
         fputs(count ? "</td></tr>\n" : "no cell with a time and an error</td></tr>\n", out);
     }
     fputs("</tbody></table></div>\n", out);
+    if (told < book->groups_count)
+        fprintf(out,
+                "<p class=\"soft\">%zu of %zu scenes and tree counts stand here, those with the "
+                "most trees; the column on_front of <a href=\"tables/results.csv\">the CSV</a> has "
+                "the fronts of all.</p>\n",
+                told, book->groups_count);
 }
 
 struct tally {
@@ -167,10 +173,10 @@ static double slowdown_in(const struct book *book, const struct group *group, co
     return fastest > 0 && isfinite(fastest) ? seconds_of(row) / fastest : NAN;
 }
 
-static struct tally tally_series(const struct book *book, size_t series)
+static struct tally tally_series(struct arena *arena, const struct book *book, size_t series)
 {
-    struct tally tally = {.slowdowns = ARENA_ARRAY(book->arena, double, book->rows_count),
-                          .flips = ARENA_ARRAY(book->arena, double, book->rows_count)};
+    struct tally tally = {.slowdowns = ARENA_ARRAY(arena, double, book->rows_count),
+                          .flips = ARENA_ARRAY(arena, double, book->rows_count)};
     for (size_t i = 0; i < book->rows_count; i++) {
         const struct row *row = &book->rows[i];
         if (row->series != series || row->is_floor)
@@ -187,6 +193,23 @@ static struct tally tally_series(const struct book *book, size_t series)
     return tally;
 }
 
+static void put_tally(const struct book *book, const struct tally *tally, FILE *out)
+{
+    fputs("<tr><th scope=\"row\">", out);
+    put_method(book, tally->example, out);
+    double slowdown = stats_geometric_mean(tally->slowdowns, tally->succeeded);
+    fprintf(out, "</th><td class=\"n\">%s</td><td class=\"n\">",
+            slowdown == 1 ? "1.00" : number_plain(slowdown, 3).text);
+    size_t n = tally->flips_count;
+    fputs(number_plain(stats_median(tally->flips, n), 3).text, out);
+    if (n > 1)
+        fprintf(out, " <span class=\"soft\">(%s to %s)</span>",
+                number_plain(stats_quantile(tally->flips, n, 0), 2).text,
+                number_plain(stats_quantile(tally->flips, n, 1), 2).text);
+    fprintf(out, "</td><td class=\"n\">%zu of %zu</td><td class=\"n\">%zu of %zu</td></tr>\n",
+            tally->on_front, tally->groups, tally->succeeded, tally->groups);
+}
+
 void answer_overall(const struct book *book, FILE *out)
 {
     fputs("<div class=\"scroll\"><table class=\"overall\"><thead><tr><th scope=\"col\">method</th>"
@@ -195,23 +218,19 @@ void answer_overall(const struct book *book, FILE *out)
           "<th scope=\"col\" class=\"n\">on the front</th>"
           "<th scope=\"col\" class=\"n\">succeeded</th></tr></thead><tbody>\n",
           out);
-    for (size_t s = 0; s < book->series_count; s++) {
-        struct tally tally = tally_series(book, s);
-        if (!tally.example)
-            continue;
-        fputs("<tr><th scope=\"row\">", out);
-        put_method(book, tally.example, out);
-        double slowdown = stats_geometric_mean(tally.slowdowns, tally.succeeded);
-        fprintf(out, "</th><td class=\"n\">%s</td><td class=\"n\">",
-                slowdown == 1 ? "1.00" : number_plain(slowdown, 3).text);
-        size_t n = tally.flips_count;
-        fputs(number_plain(stats_median(tally.flips, n), 3).text, out);
-        if (n > 1)
-            fprintf(out, " <span class=\"soft\">(%s to %s)</span>",
-                    number_plain(stats_quantile(tally.flips, n, 0), 2).text,
-                    number_plain(stats_quantile(tally.flips, n, 1), 2).text);
-        fprintf(out, "</td><td class=\"n\">%zu of %zu</td><td class=\"n\">%zu of %zu</td></tr>\n",
-                tally.on_front, tally.groups, tally.succeeded, tally.groups);
+    for (size_t s = 0; s < book->series_count && s < SERIES_MAX; s++) {
+        struct arena *scratch = arena_create(0);
+        struct tally tally = tally_series(scratch, book, s);
+        if (tally.example)
+            put_tally(book, &tally, out);
+        arena_destroy(scratch);
     }
-    fputs("</tbody></table></div>\n", out);
+    fputs("</tbody></table></div>\n<p class=\"soft\">Times are ratios to the fastest method of the "
+          "same scene and tree count, combined by their geometric mean over the cells that "
+          "succeeded; frame rates are never averaged. Mind the last column before comparing.",
+          out);
+    if (book->series_count > SERIES_MAX)
+        fprintf(out, " Here stand the first %d of %zu methods and options.", SERIES_MAX,
+                book->series_count);
+    fputs("</p>\n", out);
 }

@@ -58,25 +58,23 @@ static double mean_standard_error(const struct result *result, bool full)
 }
 
 /* Medians over the successful repetitions of what a repetition measures once. */
-static void fill_scalars(const struct run *run, struct row *row)
+static void fill_scalars(struct arena *arena, struct row *row)
 {
-    double *kept = malloc((run->results_count + 1) * sizeof *kept);
-    size_t count = 0;
-    row->values[COLUMN_frames] = 0;
+    const struct summary *summary = row->summary;
+    size_t results_count = summary->repetitions + summary->failures, count;
+    double *kept = ARENA_ARRAY(arena, double, results_count);
 #define FILL(field, unit, better, doc)                                                             \
     count = 0;                                                                                     \
-    for (size_t i = 0; kept && i < run->results_count; i++)                                        \
-        if (run->results[i].status == STATUS_OK &&                                                 \
-            strcmp(run->results[i].cell.name, row->seen->cell.name) == 0)                          \
-            kept[count++] = run->results[i].field;                                                 \
+    for (size_t i = 0; i < results_count; i++)                                                     \
+        if (summary->results[i]->status == STATUS_OK)                                              \
+            kept[count++] = summary->results[i]->field;                                            \
     row->values[COLUMN_##field] = stats_median(kept, count);
     RESULT_COLUMNS(FILL)
 #undef FILL
-    for (size_t i = 0; i < run->results_count; i++)
-        if (run->results[i].status == STATUS_OK &&
-            strcmp(run->results[i].cell.name, row->seen->cell.name) == 0)
-            row->values[COLUMN_frames] += (double)run->results[i].frames_count;
-    free(kept);
+    row->values[COLUMN_frames] = 0;
+    for (size_t i = 0; i < results_count; i++)
+        if (summary->results[i]->status == STATUS_OK)
+            row->values[COLUMN_frames] += (double)summary->results[i]->frames_count;
 }
 
 static void fill_errors(struct row *row)
@@ -99,7 +97,7 @@ static void fill_errors(struct row *row)
     row->compared = !isnan(row->values[COLUMN_same_flip]);
 }
 
-static void fill_row(const struct run *run, struct row *row)
+static void fill_row(struct arena *arena, struct row *row)
 {
     for (size_t i = 0; i < COLUMNS_COUNT; i++)
         row->values[i] = NAN;
@@ -107,7 +105,7 @@ static void fill_row(const struct run *run, struct row *row)
     row->values[COLUMN_failures] = (double)row->summary->failures;
     if (!row->ok)
         return;
-    fill_scalars(run, row);
+    fill_scalars(arena, row);
     row->values[COLUMN_frame_seconds] = row->summary->frame_seconds.value;
     row->values[COLUMN_frame_seconds_low] = row->summary->frame_seconds.low;
     row->values[COLUMN_frame_seconds_high] = row->summary->frame_seconds.high;
@@ -116,49 +114,10 @@ static void fill_row(const struct run *run, struct row *row)
     fill_errors(row);
 }
 
-/* What of a cell's name varies over the run and so belongs in its label. */
-struct varying {
-    bool lod, format;
-};
-
-/* lod: over the cells of the same method; target format: over all. */
-static struct varying find_varying(const struct book *book, const struct row *row)
-{
-    struct varying varying = {false, false};
-    const struct cell *cell = &row->seen->cell;
-    for (size_t i = 0; i < book->rows_count; i++) {
-        const struct cell *other = &book->rows[i].seen->cell;
-        bool same_method = strcmp(cell->method_name, other->method_name) == 0;
-        varying.lod = varying.lod || (same_method && cell->lod != other->lod);
-        varying.format = varying.format || cell->format != other->format;
-    }
-    return varying;
-}
-
 static const char *base_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash && slash[1] ? slash + 1 : path;
-}
-
-static void label_row(struct arena *arena, struct row *row, struct varying varying)
-{
-    const struct cell *cell = &row->seen->cell;
-    const char *comma = cell->options[0] ? ", " : "";
-    char *options = arena_strdup(arena, cell->options);
-    for (char *c = options; *c; c++)
-        if (*c == ',')
-            *c = ' ';
-    const char *variant = options;
-    if (varying.lod && !row->is_floor) {
-        variant = arena_printf(arena, "%s%slod=%s", variant, comma, lod_word(cell->lod));
-        comma = ", ";
-    }
-    if (varying.format)
-        variant = arena_printf(arena, "%s%s%s", variant, comma, target_format_word(cell->format));
-    row->variant = variant;
-    row->method = base_name(cell->method_name);
-    row->label = *variant ? arena_printf(arena, "%s %s", row->method, variant) : row->method;
 }
 
 /* Index of the text in the list, put at its end when new. */
@@ -170,6 +129,48 @@ static size_t index_of(const char **list, size_t *count, const char *text)
     if (i == *count)
         list[(*count)++] = text;
     return i;
+}
+
+/* What of a cell's name varies and so belongs in its label: lod over the cells of one method, the
+ * target format over all. */
+struct varying {
+    bool *lod; /* a method */
+    bool format;
+};
+
+static struct varying find_varying(const struct book *book)
+{
+    struct varying varying = {.lod = ARENA_ARRAY(book->arena, bool, book->methods_count + 1)};
+    const struct cell **first =
+        ARENA_ARRAY(book->arena, const struct cell *, book->methods_count + 1);
+    for (size_t i = 0; i < book->rows_count; i++) {
+        const struct row *row = &book->rows[i];
+        const struct cell *cell = &row->seen->cell;
+        if (!first[row->method_index])
+            first[row->method_index] = cell;
+        varying.lod[row->method_index] |= first[row->method_index]->lod != cell->lod;
+        varying.format |= book->rows[0].seen->cell.format != cell->format;
+    }
+    return varying;
+}
+
+static void label_row(struct arena *arena, struct row *row, const struct varying *varying)
+{
+    const struct cell *cell = &row->seen->cell;
+    const char *comma = cell->options[0] ? ", " : "";
+    char *options = arena_strdup(arena, cell->options);
+    for (char *c = options; *c; c++)
+        if (*c == ',')
+            *c = ' ';
+    const char *variant = options;
+    if (varying->lod[row->method_index] && !row->is_floor) {
+        variant = arena_printf(arena, "%s%slod=%s", variant, comma, lod_word(cell->lod));
+        comma = ", ";
+    }
+    if (varying->format)
+        variant = arena_printf(arena, "%s%s%s", variant, comma, target_format_word(cell->format));
+    row->variant = variant;
+    row->label = *variant ? arena_printf(arena, "%s %s", row->method, variant) : row->method;
 }
 
 static int compare_texts(const void *a, const void *b)
@@ -230,20 +231,28 @@ static struct group group_of(const struct row *row)
                           .seed = cell->seed};
 }
 
-static void make_groups(struct book *book)
+/* The rows are sorted: those of a group follow each other. */
+static void find_groups(struct book *book)
 {
     struct arena *arena = book->arena;
-    book->groups = ARENA_ARRAY(arena, struct group, book->rows_count);
+    book->groups = ARENA_ARRAY(arena, struct group, book->rows_count + 1);
+    size_t *places = ARENA_ARRAY(arena, size_t, book->rows_count + 1);
     for (size_t i = 0; i < book->rows_count; i++) {
         struct group group = group_of(&book->rows[i]);
-        size_t k = 0;
-        while (k < book->groups_count && compare_groups(&book->groups[k], &group) != 0)
-            k++;
-        if (k == book->groups_count)
+        if (i == 0 || compare_groups(&book->groups[book->groups_count - 1], &group) != 0) {
+            group.rows = places + i;
             book->groups[book->groups_count++] = group;
+        }
+        places[i] = i;
+        book->groups[book->groups_count - 1].rows_count++;
+        book->rows[i].group = book->groups_count - 1;
     }
-    qsort(book->groups, book->groups_count, sizeof *book->groups, compare_groups);
-    book->families = ARENA_ARRAY(arena, const char *, book->groups_count);
+}
+
+static void name_groups(struct book *book)
+{
+    struct arena *arena = book->arena;
+    book->families = ARENA_ARRAY(arena, const char *, book->groups_count + 1);
     for (size_t k = 0; k < book->groups_count; k++) {
         struct group *group = &book->groups[k];
         const char *family = family_title(book, group);
@@ -252,14 +261,6 @@ static void make_groups(struct book *book)
             arena_printf(arena, "%s, %s tree%s", family,
                          number_plain((double)group->trees, 15).text, plural(group->trees));
         group->slug = slug_of(arena, family, group->trees);
-        group->rows = ARENA_ARRAY(arena, size_t, book->rows_count);
-        for (size_t i = 0; i < book->rows_count; i++) {
-            struct group other = group_of(&book->rows[i]);
-            if (compare_groups(group, &other) == 0) {
-                group->rows[group->rows_count++] = i;
-                book->rows[i].group = k;
-            }
-        }
     }
 }
 
@@ -273,15 +274,12 @@ static int compare_rows(const void *a, const void *b)
     return order ? order : strcmp(x->seen->cell.name, y->seen->cell.name);
 }
 
-struct book *book_make(struct arena *arena, const struct run *run)
+static void make_rows(struct book *book)
 {
-    struct book *book = ARENA_NEW(arena, struct book);
-    book->arena = arena;
-    book->run = run;
-    struct summary *summaries = report_summaries(arena, run, &book->rows_count);
-    book->rows = ARENA_ARRAY(arena, struct row, book->rows_count);
-    book->methods = ARENA_ARRAY(arena, const char *, book->rows_count);
-    book->series = ARENA_ARRAY(arena, const char *, book->rows_count);
+    struct arena *arena = book->arena;
+    struct summary *summaries = report_summaries(arena, book->run, &book->rows_count);
+    book->rows = ARENA_ARRAY(arena, struct row, book->rows_count + 1);
+    book->methods = ARENA_ARRAY(arena, const char *, book->rows_count + 1);
     for (size_t i = 0; i < book->rows_count; i++) {
         struct row *row = &book->rows[i];
         row->summary = &summaries[i];
@@ -289,24 +287,42 @@ struct book *book_make(struct arena *arena, const struct run *run)
         row->ok = summaries[i].repetitions > 0;
         row->is_floor = report_is_floor(row->seen);
         row->trees = report_trees(row->seen);
-        fill_row(run, row);
+        row->method = base_name(row->seen->cell.method_name);
+        fill_row(arena, row);
         book->effects_differ =
             book->effects_differ ||
             (row->compared && !row->is_floor && row->seen->effects != row->seen->scene_effects);
+        index_of(book->methods, &book->methods_count, row->method);
     }
-    for (size_t i = 0; i < book->rows_count; i++)
-        label_row(arena, &book->rows[i], find_varying(book, &book->rows[i]));
-    qsort(book->rows, book->rows_count, sizeof *book->rows, compare_rows);
-    for (size_t i = 0; i < book->rows_count; i++)
-        index_of(book->methods, &book->methods_count, book->rows[i].method);
     qsort(book->methods, book->methods_count, sizeof *book->methods, compare_texts);
-    for (size_t i = 0; i < book->rows_count; i++) {
-        struct row *row = &book->rows[i];
-        row->method_index = index_of(book->methods, &book->methods_count, row->method);
-        row->series = index_of(book->series, &book->series_count, row->label);
-    }
-    make_groups(book);
+    for (size_t i = 0; i < book->rows_count; i++)
+        book->rows[i].method_index =
+            index_of(book->methods, &book->methods_count, book->rows[i].method);
+}
+
+struct book *book_make(struct arena *arena, const struct run *run)
+{
+    struct book *book = ARENA_NEW(arena, struct book);
+    book->arena = arena;
+    book->run = run;
+    make_rows(book);
+    struct varying varying = find_varying(book);
+    for (size_t i = 0; i < book->rows_count; i++)
+        label_row(arena, &book->rows[i], &varying);
+    qsort(book->rows, book->rows_count, sizeof *book->rows, compare_rows);
+    book->series = ARENA_ARRAY(arena, const char *, book->rows_count + 1);
+    for (size_t i = 0; i < book->rows_count; i++)
+        book->rows[i].series = index_of(book->series, &book->series_count, book->rows[i].label);
+    find_groups(book);
+    name_groups(book);
+    book_find_laws(book);
     return book;
+}
+
+bool book_is_overview(const struct book *book, size_t group)
+{
+    return group + 1 == book->groups_count ||
+           book->groups[group + 1].family != book->groups[group].family;
 }
 
 size_t book_front(const struct book *book, const struct group *group, size_t *front)

@@ -3,6 +3,7 @@
 #define TREELINE_REPORT_BOOK_H
 
 #include "report/report.h"
+#include "stats/stats.h"
 
 #include <stdio.h>
 
@@ -75,9 +76,22 @@ struct group {
     size_t trees;
     int width_px, height_px;
     uint64_t seed;
-    size_t *rows; /* indices into book.rows */
+    const size_t *rows; /* indices into book.rows, one after the other */
     size_t rows_count;
     size_t family; /* groups that differ in trees alone share one */
+};
+
+/* A row of a series in a family. */
+struct law_point {
+    size_t family, series, row;
+};
+/* Frame seconds = time.a * trees ^ time.b: least squares of logarithms, the interval of b by
+ * Student's t. */
+struct law {
+    const struct law_point *points; /* by trees */
+    size_t points_count;
+    struct power_law time;
+    bool is_fitted; /* three points or more */
 };
 
 struct book {
@@ -94,9 +108,14 @@ struct book {
     size_t series_count;
     const char **families; /* titles */
     size_t families_count;
+    struct law *laws; /* a family and series, those with one point too */
+    size_t laws_count;
     bool effects_differ; /* some cell draws less than its scene asks for */
 };
 struct book *book_make(struct arena *arena, const struct run *run);
+void book_find_laws(struct book *book); /* by book_make */
+/* The group with the most trees of its family: what overviews show. */
+bool book_is_overview(const struct book *book, size_t group);
 /* Rows of a group on the front, fastest first; front holds group->rows_count places. */
 size_t book_front(const struct book *book, const struct group *group, size_t *front);
 
@@ -111,12 +130,17 @@ struct number number_exact(double value);             /* shortest that reads bac
 struct number number_seconds(double seconds);
 
 void html_put(FILE *out, const char *text);
+void html_put_label(FILE *out, const struct book *book, const struct row *row); /* with symbol */
 /* Writes what an open_memstream collected; closes it and frees. */
 enum status sheet_write(FILE *sheet, char **data, const size_t *size, const char *path,
                         struct error *error);
 
 enum status export_tables(const struct book *book, const char *folder, struct error *error);
 
+/* The group to speak about first: a front of the three points that are told, then the most trees,
+ * then the most cells; NULL: no group has a front. front: as of book_front, of rows_count places.
+ */
+const struct group *answer_group(const struct book *book, size_t *front, size_t *front_count);
 /* Sentences. */
 void answer_headline(const struct book *book, FILE *out);
 void answer_fronts(const struct book *book, FILE *out);  /* HTML table: a row per group */
@@ -136,41 +160,37 @@ void theme_css(FILE *out);
  * prefix. alone: with its own style sheet, for a file; else for inclusion in the page. */
 void theme_svg(const char *svg, const char *prefix, const char *title, bool alone, FILE *out);
 
-/* One figure. Files FOLDER/NAME.{dat,gp,svg,png} and NAME-narrow.svg. */
+/* One static figure of the overview. Files FOLDER/NAME.{dat,gp,svg,png} and NAME-narrow.svg. */
+enum figure_kind { FIGURE_TRADE_SAME, FIGURE_TRADE_FULL, FIGURE_GROWTH, FIGURE_DISTANCE };
 struct figure {
+    enum figure_kind kind;
     const char *name, *title;
-    char *caption;          /* HTML; NULL: none */
     char *svg, *svg_narrow; /* for inclusion; NULL: could not be drawn */
 };
-/* Figures of a group: errors against frame time. metric: COLUMN_same_flip ...; the figure stays
- * empty when no cell was compared. */
-enum status plot_trade(const struct book *book, const struct group *group, enum column_index metric,
-                       const char *folder, struct figure *figure, struct error *error);
-/* Frame rate against trees of a family. *drawn is false when there are fewer than two tree counts.
- */
-enum status plot_growth(const struct book *book, size_t family, const char *folder,
-                        struct figure *figure, bool *drawn, struct error *error);
-/* Error against distance over a group's views. *drawn is false when the distance hardly changes. */
-enum status plot_distance(const struct book *book, const struct group *group, const char *folder,
-                          struct figure *figure, bool *drawn, struct error *error);
+struct figures {
+    struct figure *list;
+    size_t count;
+};
+/* The overview's figures, of the first families; one gnuplot draws them all. */
+enum status plots_draw(const struct book *book, const char *folder, struct figures *figures,
+                       struct error *error);
 
-/* Writes the group's pictures as HTML and as OUT/pictures/NAME.png. budget_px: pixels a thumbnail
- * may have. */
+/* Pictures as HTML and as OUT/pictures/NAME.png, within what a page may hold. */
 struct gallery {
     const struct book *book;
     const char *out_folder;
-    int thumbnail_px; /* width */
-    size_t missing;   /* pictures that could not be shown */
+    int thumbnail_px;                                /* width; maps have half of it */
+    bool overview_only, first_view_only, front_only; /* what the page's size allows */
+    size_t missing;                                  /* pictures that could not be shown */
 };
 void gallery_start(struct gallery *gallery, const struct book *book, const char *out_folder);
+bool gallery_shows(const struct gallery *gallery, const struct group *group);
 void gallery_group(struct gallery *gallery, const struct group *group, FILE *out);
 
-struct plots {
-    struct figure (*trade)[4]; /* a group: FLIP same, FLIP full, rmse same, rmse full */
-    struct figure *growth;     /* a family */
-    struct figure *distance;   /* a group */
-};
-enum status page_write(const struct book *book, const struct plots *plots, const char *no_plots,
+/* The page's data: one line of JSON. */
+const char *data_json(const struct book *book, struct arena *arena);
+
+enum status page_write(const struct book *book, const struct figures *figures, const char *no_plots,
                        const char *out_folder, struct error *error);
 
 #endif

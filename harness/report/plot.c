@@ -15,7 +15,7 @@ enum {
     NARROW_HEIGHT_PX = 300,
     KEY_PX = 17
 };
-static const double timeout_seconds = 60;
+static const double timeout_seconds = 120;
 
 void plot_open(struct plot *plot, const struct book *book, const char *folder, const char *name,
                const char *title)
@@ -159,33 +159,6 @@ static void put_terminals(struct plot *plot)
             NARROW_WIDTH_PX, NARROW_HEIGHT_PX + (plot->columns > 1 ? 3 : 1) * extra_px, name);
 }
 
-/* Rereads an SVG that gnuplot wrote, themes the file, and returns the form for inclusion. */
-static enum status adopt_svg(const struct plot *plot, const char *suffix, char **inlined,
-                             struct error *error)
-{
-    struct arena *arena = plot->book->arena, *scratch = arena_create(0);
-    const char *path = arena_printf(arena, "%s/%s%s.svg", plot->folder, plot->name, suffix);
-    const char *prefix = arena_printf(arena, "%s%s", plot->name, suffix);
-    char *svg = NULL;
-    size_t size = 0;
-    enum status status = file_read(scratch, path, (size_t)1 << 26, &svg, &size, error);
-    for (int alone = 1; alone >= 0 && status == STATUS_OK; alone--) {
-        char *text = NULL;
-        size_t text_size = 0;
-        FILE *out = open_memstream(&text, &text_size);
-        theme_svg(svg, prefix, plot->title, alone, out);
-        if (alone) {
-            status = sheet_write(out, &text, &text_size, path, error);
-        } else {
-            fclose(out);
-            *inlined = arena_strdup(arena, text);
-            free(text);
-        }
-    }
-    arena_destroy(scratch);
-    return status;
-}
-
 void plot_discard(struct plot *plot)
 {
     fclose(plot->gp);
@@ -218,11 +191,56 @@ enum status plot_close(struct plot *plot, struct figure *figure, struct error *e
     status = status == STATUS_OK ? written : status;
     figure->name = plot->name;
     figure->title = plot->title;
+    return status;
+}
+
+/* Rereads an SVG that gnuplot wrote, themes the file, and returns the form for inclusion. */
+static enum status adopt_svg(struct arena *arena, const char *folder, const struct figure *figure,
+                             const char *suffix, char **inlined, struct error *error)
+{
+    struct arena *scratch = arena_create(0);
+    const char *path = arena_printf(scratch, "%s/%s%s.svg", folder, figure->name, suffix);
+    const char *prefix = arena_printf(scratch, "%s%s", figure->name, suffix);
+    char *svg = NULL;
+    size_t size = 0;
+    enum status status = file_read(scratch, path, (size_t)1 << 26, &svg, &size, error);
+    for (int alone = 1; alone >= 0 && status == STATUS_OK; alone--) {
+        char *text = NULL;
+        size_t text_size = 0;
+        FILE *out = open_memstream(&text, &text_size);
+        theme_svg(svg, prefix, figure->title, alone, out);
+        if (alone) {
+            status = sheet_write(out, &text, &text_size, path, error);
+        } else {
+            fclose(out);
+            *inlined = arena_strdup(arena, text);
+            free(text);
+        }
+    }
+    arena_destroy(scratch);
+    return status;
+}
+
+enum status plot_draw(const struct book *book, const char *folder, const struct figures *figures,
+                      struct error *error)
+{
+    if (figures->count == 0)
+        return STATUS_OK;
+    char *text = NULL;
+    size_t size = 0;
+    FILE *all = open_memstream(&text, &size);
+    fputs("# Draws every plot of this folder again: gnuplot all.gp\n", all);
+    for (size_t i = 0; i < figures->count; i++)
+        fprintf(all, "reset\nload \"%s.gp\"\n", figures->list[i].name);
+    const char *path = arena_printf(book->arena, "%s/all.gp", folder);
+    enum status status = sheet_write(all, &text, &size, path, error);
     if (status == STATUS_OK)
-        status = gnuplot_run(plot->folder, script, timeout_seconds, error);
-    if (status == STATUS_OK)
-        status = adopt_svg(plot, "", &figure->svg, error);
-    if (status == STATUS_OK)
-        status = adopt_svg(plot, "-narrow", &figure->svg_narrow, error);
+        status = gnuplot_run(folder, "all.gp", timeout_seconds, error);
+    for (size_t i = 0; i < figures->count && status == STATUS_OK; i++) {
+        struct figure *figure = &figures->list[i];
+        status = adopt_svg(book->arena, folder, figure, "", &figure->svg, error);
+        if (status == STATUS_OK)
+            status = adopt_svg(book->arena, folder, figure, "-narrow", &figure->svg_narrow, error);
+    }
     return status;
 }

@@ -43,7 +43,22 @@ void plot_keep_clear(struct plot *plot, double x, double y);
 void plot_note(struct plot *plot, double x, double y, const char *text);
 /* Nothing to draw after all. */
 void plot_discard(struct plot *plot);
-/* Runs gnuplot and fills the figure. */
+/* Writes data and script; the figure gets its name and title. */
 enum status plot_close(struct plot *plot, struct figure *figure, struct error *error);
+/* Each writes its files, or nothing when there is nothing to show or too much to tell apart: then
+ * the figure has no name.
+ * Errors against frame time of a group; full: the reference has all effects. */
+enum status plot_trade(const struct book *book, const struct group *group, bool full,
+                       const char *folder, struct figure *figure, struct error *error);
+/* Frame rate against trees of a family. */
+enum status plot_growth(const struct book *book, size_t family, const char *folder,
+                        struct figure *figure, struct error *error);
+/* Error against distance over a group's views. */
+enum status plot_distance(const struct book *book, const struct group *group, const char *folder,
+                          struct figure *figure, struct error *error);
+
+/* Runs gnuplot once over all figures and fills in their SVGs. */
+enum status plot_draw(const struct book *book, const char *folder, const struct figures *figures,
+                      struct error *error);
 
 #endif

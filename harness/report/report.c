@@ -6,38 +6,6 @@
 
 #include <string.h>
 
-static enum status draw_group(const struct book *book, size_t g, const char *folder,
-                              struct plots *plots, struct error *error)
-{
-    static const enum column_index metrics[] = {COLUMN_same_flip, COLUMN_full_flip,
-                                                COLUMN_same_rmse, COLUMN_full_rmse};
-    const struct group *group = &book->groups[g];
-    enum status status = STATUS_OK;
-    for (size_t k = 0; k < 4 && status == STATUS_OK; k++)
-        if (book->effects_differ || k % 2 == 0)
-            status = plot_trade(book, group, metrics[k], folder, &plots->trade[g][k], error);
-    bool drawn;
-    if (status == STATUS_OK)
-        status = plot_distance(book, group, folder, &plots->distance[g], &drawn, error);
-    return status;
-}
-
-static enum status draw_plots(const struct book *book, const char *folder, struct plots *plots,
-                              struct error *error)
-{
-    struct arena *arena = book->arena;
-    plots->trade = arena_alloc(arena, book->groups_count, sizeof *plots->trade);
-    plots->distance = ARENA_ARRAY(arena, struct figure, book->groups_count);
-    plots->growth = ARENA_ARRAY(arena, struct figure, book->families_count);
-    enum status status = file_make_folder(folder, error);
-    for (size_t g = 0; g < book->groups_count && status == STATUS_OK; g++)
-        status = draw_group(book, g, folder, plots, error);
-    bool drawn;
-    for (size_t f = 0; f < book->families_count && status == STATUS_OK; f++)
-        status = plot_growth(book, f, folder, &plots->growth[f], &drawn, error);
-    return status;
-}
-
 static const char *last_name(struct arena *arena, const char *folder)
 {
     char *name = arena_strdup(arena, folder);
@@ -56,11 +24,12 @@ static enum status write_all(const struct book *book, const char *out_folder, st
     enum status status = export_tables(book, arena_printf(arena, "%s/tables", out_folder), error);
     if (status != STATUS_OK)
         return status;
-    struct plots plots;
+    struct figures figures = {0};
     struct error no_plots = {.status = STATUS_OK};
     enum status drawn =
-        draw_plots(book, arena_printf(arena, "%s/plots", out_folder), &plots, &no_plots);
-    status = page_write(book, &plots, drawn == STATUS_OK ? NULL : no_plots.text, out_folder, error);
+        plots_draw(book, arena_printf(arena, "%s/plots", out_folder), &figures, &no_plots);
+    status =
+        page_write(book, &figures, drawn == STATUS_OK ? NULL : no_plots.text, out_folder, error);
     if (status == STATUS_OK && drawn != STATUS_OK)
         return error_set(error, drawn, "%s/index.html was written without all plots: %s",
                          out_folder, no_plots.text);

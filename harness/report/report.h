@@ -9,9 +9,10 @@
 
 /* One row of every table: a cell over its successful repetitions. */
 struct summary {
-    const struct result *first;   /* a successful repetition, one with compared pictures before one
-                                     without; or the first failed one */
-    size_t repetitions, failures; /* that succeeded; that did not */
+    const struct result *first;    /* a successful repetition, one with compared pictures before one
+                                      without; or the first failed one */
+    const struct result **results; /* every repetition, in file order */
+    size_t repetitions, failures;  /* of these, that succeeded; that did not */
     struct {
         double value, low, high;
     } frame_seconds;    /* median over repetitions of each one's median, with its 95 % interval */
@@ -25,10 +26,10 @@ struct summary *report_summaries(struct arena *arena, const struct run *run, siz
 size_t report_trees(const struct result *result);
 bool report_is_floor(const struct result *result); /* method null */
 
-/* Writes OUT/index.html (self-contained), OUT/plots/NAME.{dat,gp,svg,png},
- * OUT/tables/results.{md,csv,tex} and OUT/pictures/NAME.png (full size). A picture or reference
- * that is missing is said on the page. Without gnuplot: STATUS_UNAVAILABLE, after the tables and a
- * page that says so were written. */
+/* Writes OUT/index.html (self-contained, interactive), OUT/plots/NAME.{dat,gp,svg,png} of the
+ * overview, OUT/tables/results.{md,csv,tex} and OUT/pictures/NAME.png (full size). A picture or
+ * reference that is missing is said on the page. Without gnuplot: STATUS_UNAVAILABLE, after the
+ * tables and a page that says so were written. */
 enum status report_write_run(struct arena *arena, const struct run *run, const char *out_folder,
                              struct error *error);
 /* The same from a run on disk: its folder or its file. */

@@ -5,19 +5,12 @@
 #include "stats/stats.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 size_t report_trees(const struct result *result)
 {
     return result->cell.trees == SIZE_MAX ? result->instances : result->cell.trees;
-}
-
-/* Of one scene, tree count, size and seed: the cells that a front is made of. */
-static bool comparable(const struct result *a, const struct result *b)
-{
-    return strcmp(a->cell.scene, b->cell.scene) == 0 && report_trees(a) == report_trees(b) &&
-           a->cell.width_px == b->cell.width_px && a->cell.height_px == b->cell.height_px &&
-           a->cell.seed == b->cell.seed;
 }
 
 bool report_is_floor(const struct result *result)
@@ -50,69 +43,110 @@ static const struct result *best_of(const struct result *known, const struct res
 
 static void summarise_time(struct arena *arena, const struct run *run, struct summary *summary)
 {
-    const char *name = summary->first->cell.name;
     const double **times = ARENA_ARRAY(arena, const double *, summary->repetitions + 1);
     size_t *counts = ARENA_ARRAY(arena, size_t, summary->repetitions + 1);
     size_t kept = 0;
-    for (size_t i = 0; i < run->results_count; i++) {
-        const struct result *result = &run->results[i];
-        if (result->status != STATUS_OK || strcmp(result->cell.name, name) != 0)
+    for (size_t i = 0; i < summary->repetitions + summary->failures; i++) {
+        const struct result *result = summary->results[i];
+        if (result->status != STATUS_OK)
             continue;
         times[kept] = result->frame_seconds;
         counts[kept++] = result->frames_count;
     }
     struct interval interval =
-        stats_nested_median_interval(times, counts, kept, hash_text(0, name));
+        stats_nested_median_interval(times, counts, kept, hash_text(0, summary->first->cell.name));
     summary->frame_seconds.value = interval.value;
     summary->frame_seconds.low = interval.low;
     summary->frame_seconds.high = interval.high;
     summary->limit = limit_of(limit_calibration(run, summary->first), summary->first, interval);
 }
 
-static void mark_front(struct arena *arena, struct summary *summaries, size_t count, size_t leader)
+static int compare_groups(const void *a, const void *b)
 {
+    const struct result *x = (*(struct summary *const *)a)->first;
+    const struct result *y = (*(struct summary *const *)b)->first;
+    size_t tx = report_trees(x), ty = report_trees(y);
+    int order = strcmp(x->cell.scene, y->cell.scene);
+    if (!order)
+        order = (tx > ty) - (tx < ty);
+    if (!order)
+        order = (x->cell.width_px > y->cell.width_px) - (x->cell.width_px < y->cell.width_px);
+    if (!order)
+        order = (x->cell.height_px > y->cell.height_px) - (x->cell.height_px < y->cell.height_px);
+    return order ? order : (x->cell.seed > y->cell.seed) - (x->cell.seed < y->cell.seed);
+}
+
+/* Of cells of one scene, tree count, size and seed. */
+static void mark_front(struct summary **members, size_t count)
+{
+    struct arena *arena = arena_create(0);
     double *cost = ARENA_ARRAY(arena, double, count);
     double *error = ARENA_ARRAY(arena, double, count);
     bool *on_front = ARENA_ARRAY(arena, bool, count);
-    size_t *members = ARENA_ARRAY(arena, size_t, count), members_count = 0;
-    for (size_t i = leader; i < count; i++) {
-        const struct result *result = summaries[i].first;
-        if (!comparable(summaries[leader].first, result))
-            continue;
+    for (size_t i = 0; i < count; i++) {
+        const struct result *result = members[i]->first;
         bool fit = result->status == STATUS_OK && !report_is_floor(result);
-        cost[members_count] = fit ? summaries[i].frame_seconds.value : NAN;
-        error[members_count] = fit ? mean_flip(result) : NAN;
-        members[members_count++] = i;
+        cost[i] = fit ? members[i]->frame_seconds.value : NAN;
+        error[i] = fit ? mean_flip(result) : NAN;
     }
-    stats_pareto(cost, error, members_count, on_front);
-    for (size_t k = 0; k < members_count; k++)
-        summaries[members[k]].on_front = on_front[k];
+    stats_pareto(cost, error, count, on_front);
+    for (size_t i = 0; i < count; i++)
+        members[i]->on_front = on_front[i];
+    arena_destroy(arena);
+}
+
+static void mark_fronts(struct summary *summaries, size_t count)
+{
+    struct arena *arena = arena_create(0);
+    struct summary **sorted = ARENA_ARRAY(arena, struct summary *, count + 1);
+    for (size_t i = 0; i < count; i++)
+        sorted[i] = &summaries[i];
+    qsort(sorted, count, sizeof *sorted, compare_groups);
+    for (size_t start = 0, end; start < count; start = end) {
+        for (end = start + 1; end < count && compare_groups(&sorted[start], &sorted[end]) == 0;)
+            end++;
+        mark_front(sorted + start, end - start);
+    }
+    arena_destroy(arena);
+}
+
+/* By cell; those of a cell in file order. */
+static int compare_cells(const void *a, const void *b)
+{
+    const struct result *x = *(const struct result *const *)a;
+    const struct result *y = *(const struct result *const *)b;
+    int order = strcmp(x->cell.name, y->cell.name);
+    return order ? order : (x > y) - (x < y);
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct summary *x = a, *y = b;
+    return (x->results[0] > y->results[0]) - (x->results[0] < y->results[0]);
 }
 
 struct summary *report_summaries(struct arena *arena, const struct run *run, size_t *count)
 {
     struct summary *summaries = ARENA_ARRAY(arena, struct summary, run->results_count + 1);
+    const struct result **sorted =
+        ARENA_ARRAY(arena, const struct result *, run->results_count + 1);
+    for (size_t i = 0; i < run->results_count; i++)
+        sorted[i] = &run->results[i];
+    qsort(sorted, run->results_count, sizeof *sorted, compare_cells);
     *count = 0;
     for (size_t i = 0; i < run->results_count; i++) {
-        const struct result *result = &run->results[i];
-        size_t k = 0;
-        while (k < *count && strcmp(summaries[k].first->cell.name, result->cell.name) != 0)
-            k++;
-        *count += k == *count;
-        summaries[k].first = best_of(summaries[k].first, result);
-        summaries[k].repetitions += result->status == STATUS_OK;
-        summaries[k].failures += result->status != STATUS_OK;
+        bool starts = i == 0 || strcmp(sorted[i - 1]->cell.name, sorted[i]->cell.name) != 0;
+        *count += starts;
+        struct summary *summary = &summaries[*count - 1];
+        if (starts)
+            summary->results = sorted + i;
+        summary->first = best_of(summary->first, sorted[i]);
+        summary->repetitions += sorted[i]->status == STATUS_OK;
+        summary->failures += sorted[i]->status != STATUS_OK;
     }
+    qsort(summaries, *count, sizeof *summaries, compare_places);
     for (size_t i = 0; i < *count; i++)
         summarise_time(arena, run, &summaries[i]);
-    struct arena *scratch = arena_create(0);
-    for (size_t i = 0; i < *count; i++) {
-        bool led = true; /* by an earlier cell of its group */
-        for (size_t k = 0; k < i && led; k++)
-            led = !comparable(summaries[k].first, summaries[i].first);
-        if (led)
-            mark_front(scratch, summaries, *count, i);
-    }
-    arena_destroy(scratch);
+    mark_fronts(summaries, *count);
     return summaries;
 }

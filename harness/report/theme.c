@@ -17,7 +17,7 @@ static const struct {
     {"m3", 0xb0458f, 0xe79acb},     {"m4", 0x9a7400, 0xf0cf4a},     {"m5", 0x4b4fb5, 0xa9acf5},
     {"m6", 0x8a3b12, 0xd3a07f},     {"m7", 0x4f6f00, 0xb3d35c},     {"page", 0xfbfbf9, 0x12171d},
     {"panel", 0xfefefe, 0x1a2027},  {"accent", 0x0a5c8f, 0x7cc4f2}, {"bad", 0xa32020, 0xff8f86},
-    {"raised", 0xf2f4f3, 0x222a33},
+    {"raised", 0xf2f4f3, 0x222a33}, {"line", 0xc3c9d0, 0x4a5561},
 };
 enum { TINTS_COUNT = sizeof tints / sizeof *tints, SYMBOLS_COUNT = 6 };
 
@@ -79,18 +79,34 @@ int symbol_gnuplot(const struct book *book, size_t method_index, bool filled)
     return symbols[place_of(book, method_index) % SYMBOLS_COUNT].type - !filled;
 }
 
+static void put_tints(bool dark, FILE *out)
+{
+    fprintf(out, "{color-scheme:%s", dark ? "dark" : "light");
+    for (size_t i = 0; i < TINTS_COUNT; i++)
+        fprintf(out, ";--%s:#%06x", tints[i].variable, dark ? tints[i].dark : tints[i].light);
+    fputc('}', out);
+}
+
+/* The page's switch sets data-theme; without it the reader's system decides. Paper is light. */
 void theme_css(FILE *out)
 {
-    fputs(":root{color-scheme:light dark", out);
-    for (size_t i = 0; i < TINTS_COUNT; i++)
-        fprintf(out, ";--%s:#%06x", tints[i].variable, tints[i].light);
-    fputs("}\n@media(prefers-color-scheme:dark){:root{", out);
-    for (size_t i = 0; i < TINTS_COUNT; i++)
-        fprintf(out, "%s--%s:#%06x", i ? ";" : "", tints[i].variable, tints[i].dark);
-    fputs("}}\n@media print{:root{color-scheme:light", out);
-    for (size_t i = 0; i < TINTS_COUNT; i++)
-        fprintf(out, ";--%s:#%06x", tints[i].variable, tints[i].light);
-    fputs("}}\n", out);
+    fputs(":root", out);
+    put_tints(false, out);
+    fputs("\n@media screen and (prefers-color-scheme:dark){:root:not([data-theme=light])", out);
+    put_tints(true, out);
+    fputs("}\n@media screen{:root[data-theme=dark]", out);
+    put_tints(true, out);
+    fputs("}\n", out);
+}
+
+void html_put_label(FILE *out, const struct book *book, const struct row *row)
+{
+    fprintf(out,
+            "<svg class=\"mark\" viewBox=\"-1.5 -1.5 3 3\" aria-hidden=\"true\" "
+            "style=\"color:var(--%s)\">%s</svg>",
+            tint_variable(tint_method(book, row->method_index)),
+            symbol_html(book, row->method_index));
+    html_put(out, row->label);
 }
 
 /* "rgb( 29,  39,  51)" of the palette becomes "var(--ink)"; returns the characters taken, 0: not

@@ -1,0 +1,162 @@
+/* The static plots of frame rate against trees and of error against distance. */
+#include "report/plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* More lines than this no static plot tells apart. */
+enum { LINES_MAX = 24 };
+
+/* How many series of the same method come before this one: tells them apart by dashes. */
+static int variant_of(const struct book *book, size_t series)
+{
+    size_t *method_of = ARENA_ARRAY(book->arena, size_t, book->series_count);
+    for (size_t i = 0; i < book->rows_count; i++)
+        method_of[book->rows[i].series] = book->rows[i].method_index;
+    int before = 0;
+    for (size_t s = 0; s < series; s++)
+        before += method_of[s] == method_of[series];
+    return before;
+}
+
+/* One series of a family: frame rate by trees, with its law. */
+static void growth_series(struct plot *plot, const struct law *law, int variant)
+{
+    const struct book *book = plot->book;
+    const struct law_point *points = law->points;
+    size_t series = points->series, method = book->rows[points->row].method_index;
+    int block = plot_block(plot, book->series[series]);
+    for (size_t i = 0; i < law->points_count; i++) {
+        const struct row *row = &book->rows[points[i].row];
+        fprintf(plot->dat, "%zu %.9g %.9g %.9g\n", row->trees, row->values[COLUMN_fps],
+                1 / row->values[COLUMN_frame_seconds_high],
+                1 / row->values[COLUMN_frame_seconds_low]);
+    }
+    unsigned color = tint_rgb(tint_method(book, method));
+    plot_curve(plot);
+    fprintf(plot->gp,
+            "\"%s.dat\" index %d with yerrorbars pointtype %d pointsize 0.9 linewidth 1 "
+            "linecolor rgb \"#%06x\" notitle",
+            plot->name, block, symbol_gnuplot(book, method, variant == 0), color);
+    if (law->is_fitted) {
+        block = plot_block(plot, "its power law");
+        for (int end = 0; end < 2; end++) {
+            double at = (double)book->rows[points[end ? law->points_count - 1 : 0].row].trees;
+            fprintf(plot->dat, "%.9g %.9g\n", at, 1 / (law->time.a * pow(at, law->time.b.value)));
+        }
+    }
+    plot_curve(plot);
+    fprintf(plot->gp,
+            "\"%s.dat\" index %d using 1:2 with lines linewidth 1.3 dashtype %d linecolor rgb "
+            "\"#%06x\" notitle, \\\n    keyentry with linespoints pointtype %d pointsize 0.9 "
+            "linewidth 1.3 dashtype %d linecolor rgb \"#%06x\" title ",
+            plot->name, block, 1 + variant % 5, color, symbol_gnuplot(book, method, variant == 0),
+            1 + variant % 5, color);
+    const char *title = book->series[series];
+    if (law->is_fitted)
+        title = arena_printf(book->arena, "%s: N^(%.2f)", title, -law->time.b.value);
+    plot_text(plot->gp, title);
+    plot->key_rows++;
+}
+
+enum status plot_growth(const struct book *book, size_t family, const char *folder,
+                        struct figure *figure, struct error *error)
+{
+    struct axis x = axis_empty(), y = axis_empty();
+    const char *slug = NULL;
+    for (size_t i = 0; i < book->rows_count; i++) {
+        const struct row *row = &book->rows[i];
+        if (book->groups[row->group].family != family)
+            continue;
+        slug = slug ? slug : book->groups[row->group].slug;
+        axis_add(&x, (double)row->trees);
+        if (row->trees > 0) {
+            axis_add(&y, 1 / row->values[COLUMN_frame_seconds_low]);
+            axis_add(&y, 1 / row->values[COLUMN_frame_seconds_high]);
+        }
+    }
+    size_t lines = 0;
+    for (size_t i = 0; i < book->laws_count; i++)
+        lines += book->laws[i].points->family == family;
+    if (!(x.low < x.high && y.low <= y.high) || lines > LINES_MAX)
+        return STATUS_OK;
+    axis_widen(&x, 0.05, 0.05);
+    axis_widen(&y, 0.08, 0.08);
+    struct plot plot;
+    figure->kind = FIGURE_GROWTH;
+    plot_open(&plot, book, folder, arena_printf(book->arena, "growth-%s", slug),
+              book->families[family]);
+    plot_axes(&plot, &x, &y, "trees", "frames a second");
+    fputs("set key maxcols 1\n", plot.gp);
+    for (size_t i = 0; i < book->laws_count; i++)
+        if (book->laws[i].points->family == family)
+            growth_series(&plot, &book->laws[i], variant_of(book, book->laws[i].points->series));
+    return plot_close(&plot, figure, error);
+}
+
+static int compare_views(const void *a, const void *b)
+{
+    const struct result_view *x = *(const struct result_view *const *)a;
+    const struct result_view *y = *(const struct result_view *const *)b;
+    return (x->distance_m > y->distance_m) - (x->distance_m < y->distance_m);
+}
+
+static void distance_curve(struct plot *plot, const struct row *row, double lowest)
+{
+    const struct book *book = plot->book;
+    const struct result *seen = row->seen;
+    const struct result_view **views =
+        ARENA_ARRAY(book->arena, const struct result_view *, seen->views_count);
+    size_t count = 0;
+    for (size_t i = 0; i < seen->views_count; i++)
+        if (seen->views[i].compared && seen->views[i].distance_m > 0)
+            views[count++] = &seen->views[i];
+    if (count == 0)
+        return;
+    qsort(views, count, sizeof *views, compare_views);
+    int block = plot_block(plot, row->label);
+    for (size_t i = 0; i < count; i++)
+        fprintf(plot->dat, "%.9g %.9g\n", views[i]->distance_m,
+                fmax(views[i]->same.value.flip, lowest));
+    int variant = variant_of(book, row->series);
+    plot_curve(plot);
+    fprintf(
+        plot->gp,
+        "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
+        "%d linecolor rgb \"#%06x\" title ",
+        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
+        tint_rgb(tint_method(book, row->method_index)));
+    plot_text(plot->gp, row->label);
+    plot->key_rows++;
+}
+
+enum status plot_distance(const struct book *book, const struct group *group, const char *folder,
+                          struct figure *figure, struct error *error)
+{
+    struct axis x = axis_empty(), y = axis_empty();
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &book->rows[group->rows[i]];
+        for (size_t k = 0; k < row->seen->views_count && row->compared && !row->is_floor; k++)
+            if (row->seen->views[k].compared) {
+                axis_add(&x, row->seen->views[k].distance_m);
+                axis_add(&y, row->seen->views[k].same.value.flip);
+            }
+    }
+    if (!(x.high > 1.1 * x.low) || group->rows_count > LINES_MAX)
+        return STATUS_OK;
+    axis_widen(&x, 0.05, 0.05);
+    axis_widen(&y, 0.08, 0.08);
+    struct plot plot;
+    figure->kind = FIGURE_DISTANCE;
+    plot_open(&plot, book, folder, arena_printf(book->arena, "distance-%s", group->slug),
+              group->title);
+    plot_axes(&plot, &x, &y, "median distance to the trees in view [m]",
+              "FLIP, reference with same effects");
+    fputs("set key maxcols 1\n", plot.gp);
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &book->rows[group->rows[i]];
+        if (row->compared && !row->is_floor)
+            distance_curve(&plot, row, y.low);
+    }
+    return plot_close(&plot, figure, error);
+}
