@@ -150,18 +150,18 @@ $(GEN)/%.glsl.h: harness/bake/%.glsl $(GLSL_TO_C)
 
 # Tests: one program a file, against the archive; all of it where plugins are loaded.
 comma := ,
-$(BUILD)/tests/test_cell $(BUILD)/tests/test_methods: WHOLE := yes
+$(BUILD)/tests/test_cell $(BUILD)/tests/test_conform: WHOLE := yes
 $(BUILD)/tests/%: tests/%.c $(ARCHIVE) | $(GENERATED_H)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) -Itests $(shell pkg-config --cflags cmocka gsl 2>/dev/null) $(LDFLAGS_ALL) -o $@ $< \
 	    $(if $(WHOLE),-Wl$(comma)--whole-archive) $(ARCHIVE) -Wl,--no-whole-archive $(LIBS) -lcmocka -lgsl -lgslcblas
 
 # Methods that go wrong, as shared objects, for the tests.
-PLUGINS := $(patsubst tests/data/plugins/%.c,$(BUILD)/plugins/%.so,$(wildcard tests/data/plugins/*.c))
-$(BUILD)/plugins/%.so: tests/data/plugins/%.c | $(GENERATED_H)
+PLUGINS := $(patsubst tests/plugins/%.c,$(BUILD)/plugins/%.so,$(wildcard tests/plugins/*.c))
+$(BUILD)/plugins/%.so: tests/plugins/%.c tests/plugins/wrap.h | $(GENERATED_H)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) -shared -o $@ $<
-$(BUILD)/tests/test_cell $(BUILD)/tests/test_plan: | $(PLUGINS)
+$(BUILD)/tests/test_cell $(BUILD)/tests/test_conform $(BUILD)/tests/test_plan: | $(PLUGINS)
 plugins: $(PLUGINS)
 
 T ?=

@@ -1,6 +1,4 @@
-/* null: sky and terrain, no tree. The floor of every comparison, and the template of a method: copy
- * this file to methods/NAME.c, rename null_method to NAME_method, and it is built, listed and
- * tested. */
+/* null: sky and terrain, no tree. The floor of every comparison. */
 #include "bake/backdrop.h"
 #include "method/method.h"
 
@@ -35,7 +33,7 @@ const struct method null_method = {
     .name = "null",
     .summary = "sky and terrain without trees: what the harness and the backdrop cost",
     .source = "this project",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG | TRAIT_NO_TREES,
     .prepare = prepare,
     .draw = draw,
 };

@@ -40,13 +40,14 @@ part units make -s -j"$jobs" test
 part sanitize make -s -j"$jobs" CC=clang config=sanitize test
 part threads make -s -j"$jobs" CC=clang config=thread test T="test_metrics test_reference test_reference_noise"
 part clang build CC=clang all
-part egl make -s -j"$jobs" gl=egl test T="test_gl test_methods"
+part egl make -s -j"$jobs" gl=egl test T="test_gl test_conform"
 part cli tests/cli.sh
 part fuzz make -s -j"$jobs" fuzz FUZZ_SECONDS=60
 part smoke tests/smoke.sh
 part page tests/page.sh
 part plugins tests/plugins.sh
 part documents tests/documents.sh
+part conform tests/conform.sh
 
 [ ${#failures[@]} -gt 0 ] && echo "failed parts: ${failures[*]}; their logs are build/check-PART.log"
 echo "$passed passed, $failed failed, $skipped skipped"

@@ -280,7 +280,6 @@ static void upload(struct workspace *workspace, struct arena *scratch,
                      request->nearest ? GL_NEAREST_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_NEAREST);
     atlas->light = create_array(gl, atlas, GL_RGBA8, GL_NEAREST_MIPMAP_NEAREST);
     atlas->depth = request->depth ? create_array(gl, atlas, GL_R16, GL_LINEAR_MIPMAP_NEAREST) : 0;
-    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (size_t i = 0; i < atlas->species_count; i++)
         for (size_t view = 0; plants[i] && view < atlas->views_count; view++, layer++) {
             expand(plants[i], view, atlas, levels[0].texels);
@@ -290,7 +289,6 @@ static void upload(struct workspace *workspace, struct arena *scratch,
                 color[k] += levels[last].straight[k] / (float)atlas->layers;
             atlas->views[layer] = plants[i]->views[view];
         }
-    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     static const float none[3] = {0, 0, 0};
     border(gl, atlas->albedo, request->alpha == ATLAS_BLEND ? none : color);
 }

@@ -23,6 +23,8 @@
     X(STATUS_CRASH, 76, "crash",                                                                   \
       "a cell died of a signal or left by an exit code not listed here")                           \
     X(STATUS_CELLS_FAILED, 77, "cells-failed", "the run finished; at least one cell failed")       \
+    X(STATUS_NONCONFORMING, 78, "nonconforming",                                                   \
+      "a method breaks its contract: a check of `treeline conform` failed")                        \
     X(STATUS_INTERRUPTED, 130, "interrupted",                                                      \
       "stopped by Ctrl-C or SIGTERM; finished cells are kept")
 

@@ -9,6 +9,7 @@ const struct verb verbs[] = {
     {"reference", "ray trace one view to an EXR or PNG file", verb_reference},
     {"diff", "compare two pictures by every metric", verb_diff},
     {"calibrate", "measure what this machine can do at most", verb_calibrate},
+    {"conform", "check that methods and plugins keep the contract", verb_conform},
     {"cache", "show, trim or clear the cache of built things", verb_cache},
     {"help", "explain a verb, a method or the exit codes", verb_help},
     {NULL, NULL, NULL},

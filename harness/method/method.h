@@ -15,6 +15,7 @@ enum {
     TRAIT_CPU = 1u << 16, /* draws into target->pixels; workspace->gl is NULL */
     TRAIT_STOCHASTIC =
         1u << 17, /* its noise depends on the seed; still the same bytes for the same seed */
+    TRAIT_NO_TREES = 1u << 18, /* sky and terrain alone: a floor for the others */
 };
 
 /* Lives as long as the cell; nothing to free. */
@@ -44,7 +45,8 @@ struct method {          /* its name is its file's name, '-' written '_' in C */
                            const void *options, void **state);
     /* One picture: sky, terrain and trees, every pixel of target. Relights when view->sun_direction
      * differs from the last call's. Must not wait for the GPU: the harness finishes and stops the
-     * clock. */
+     * clock. Leaves OpenGL's state as it found it, but for bindings, blend function and depth
+     * test. */
     enum status (*draw)(struct workspace *workspace, void *state, const struct view *view,
                         struct target *target);
 };
@@ -55,7 +57,8 @@ extern const struct method *const methods_builtin[];
 
 /* A built-in method by name, or a plugin by the path of its shared object (a name with '/' or
  * ".so"). STATUS_NOT_FOUND names the nearest; an object built for another ABI, or without the
- * symbol, is STATUS_INVALID. */
+ * symbol, is STATUS_INVALID; one that crashes, leaves or hangs while it is loaded is STATUS_CRASH
+ * or STATUS_TIMEOUT. */
 enum status method_find(const char *name, const struct method **method, struct error *error);
 
 #endif

@@ -27,7 +27,7 @@ static bool symbol_name(const char *path, char *symbol, size_t size)
     return length > 0;
 }
 
-enum { LOAD_SECONDS = 20 };
+enum { LOAD_SECONDS = 20, LOADED = 42 };
 
 /* Loads the file in a child first: a cut or damaged one crashes the dynamic loader, a pipe keeps it
  * waiting, and what its constructors do is theirs. A file that is loaded already is not tried
@@ -46,7 +46,7 @@ static enum status load_try(const char *path, const char *real, struct error *er
     if (child == 0) {
         child_begin(LOAD_SECONDS);
         dlopen(real, RTLD_NOW | RTLD_LOCAL);
-        _exit(0);
+        _exit(LOADED); /* what a constructor leaves by is not likely to be this */
     }
     if (child < 0)
         return error_errno(error, STATUS_INTERNAL, "plugin %s: cannot be tried", path);
@@ -54,12 +54,15 @@ static enum status load_try(const char *path, const char *real, struct error *er
         if (errno != EINTR)
             return error_errno(error, STATUS_INTERNAL, "plugin %s: its trial was lost", path);
     if (WIFSIGNALED(state) && WTERMSIG(state) == SIGALRM)
-        return error_set(error, STATUS_INVALID, "plugin %s: takes more than %d s to load", path,
+        return error_set(error, STATUS_TIMEOUT, "plugin %s: takes more than %d s to load", path,
                          LOAD_SECONDS);
-    if (WIFSIGNALED(state) || WEXITSTATUS(state) != 0)
-        return error_set(error, STATUS_INVALID, "plugin %s: is damaged: loading it ends in %s %d",
-                         path, WIFSIGNALED(state) ? "signal" : "exit code",
-                         WIFSIGNALED(state) ? WTERMSIG(state) : WEXITSTATUS(state));
+    if (WIFSIGNALED(state))
+        return error_set(error, STATUS_CRASH, "plugin %s: dies of signal %d (%s) when it is loaded",
+                         path, WTERMSIG(state), strsignal(WTERMSIG(state)));
+    if (WEXITSTATUS(state) != LOADED)
+        return error_set(error, STATUS_CRASH,
+                         "plugin %s: leaves by exit code %d when it is loaded", path,
+                         WEXITSTATUS(state));
     return STATUS_OK;
 }
 

@@ -151,13 +151,15 @@ void camera_depths(const struct scene *scene, float (*eyes_m)[3], size_t count, 
     float aspect = (float)scene->width_px / (float)scene->height_px;
     float tangent = tanf(0.5f * scene->camera.fov_y_rad);
     float corner_cosine = 1.0f / sqrtf(1.0f + tangent * tangent * (1.0f + aspect * aspect));
-    float far_corner_m = 1;
+    float far_corner_m = 1e-3f;
     for (size_t e = 0; e < count; e++)
         far_corner_m = fmaxf(far_corner_m, far_corner(scene, eyes_m[e]));
     *far_m = 1.02f * far_corner_m;
     float moving = count > 1 ? 0.5f : 0.95f; /* the eye may come nearer between two samples */
     float near_sphere_m = moving * corner_cosine * free_distance(scene, eyes_m, count);
-    *near_m = fminf(fmaxf(near_sphere_m, 0.1f), 0.5f * *far_m);
+    /* 0.1 m, or less where the trees themselves are small */
+    float least_m = scene->tree_reach_m > 0 ? fminf(0.1f, 0.02f * scene->tree_reach_m) : 0.1f;
+    *near_m = fminf(fmaxf(near_sphere_m, least_m), 0.5f * *far_m);
 }
 
 static void keys_build(struct arena *arena, const struct description *description,

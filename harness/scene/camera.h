@@ -12,7 +12,8 @@ void camera_at(const struct scene *scene, double time, float eye_m[3], float tar
 void camera_build(struct arena *arena, const struct description *description, struct scene *scene);
 
 /* Depths along any view direction from any of the eyes (count x 3, m; count <= EYES_MAX) that hold
- * the scene. near_m is at least 0.1 m: an eye within a tree's reach may lose what is nearer. */
+ * the scene. near_m is at least 0.1 m, or a fiftieth of the trees' reach where that is less: an eye
+ * within a tree's reach may lose what is nearer. */
 enum { EYES_MAX = 65 };
 void camera_depths(const struct scene *scene, float (*eyes_m)[3], size_t count, float *near_m,
                    float *far_m);

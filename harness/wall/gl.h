@@ -41,6 +41,8 @@ void gl_context_destroy(struct gl *gl);
 enum status gl_check(struct gl *gl, const char *where, struct error *error);
 /* Bytes of the buffers, textures and renderbuffers alive, by their sizes and formats. */
 size_t gl_device_bytes(const struct gl *gl);
+/* The same of all that OpenGL itself knows, also what was made without the functions below. */
+size_t gl_alive_bytes(struct gl *gl);
 
 /* Counted objects. Sizes are recorded for gl_device_bytes. data may be NULL. */
 GLuint gl_buffer(struct gl *gl, GLsizeiptr size_bytes, const void *data, GLbitfield storage_flags);

@@ -112,6 +112,55 @@ static size_t level_bytes(struct gl *gl, GLuint texture, int level)
     return (size_t)width * (size_t)height * (size_t)(depth > 0 ? depth : 1) * (size_t)bits / 8;
 }
 
+static size_t texture_bytes(struct gl *gl, GLuint texture)
+{
+    enum { LEVELS_MAX = 15 };
+    GLint target = 0, levels = 0, samples = 0;
+    size_t bytes = 0;
+    gl->GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+    if (target == GL_TEXTURE_BUFFER) /* counted as a buffer */
+        return 0;
+    gl->GetTextureParameteriv(texture, GL_TEXTURE_IMMUTABLE_LEVELS, &levels);
+    for (int level = 0; level < (levels ? levels : LEVELS_MAX); level++)
+        bytes += level_bytes(gl, texture, level) * (target == GL_TEXTURE_CUBE_MAP ? 6 : 1);
+    gl->GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_SAMPLES, &samples);
+    return bytes * (samples > 1 ? (size_t)samples : 1);
+}
+
+static size_t renderbuffer_bytes(struct gl *gl, GLuint buffer)
+{
+    static const GLenum sizes[] = {GL_RENDERBUFFER_RED_SIZE,   GL_RENDERBUFFER_GREEN_SIZE,
+                                   GL_RENDERBUFFER_BLUE_SIZE,  GL_RENDERBUFFER_ALPHA_SIZE,
+                                   GL_RENDERBUFFER_DEPTH_SIZE, GL_RENDERBUFFER_STENCIL_SIZE};
+    GLint width = 0, height = 0, samples = 0, bits = 0;
+    gl->GetNamedRenderbufferParameteriv(buffer, GL_RENDERBUFFER_WIDTH, &width);
+    gl->GetNamedRenderbufferParameteriv(buffer, GL_RENDERBUFFER_HEIGHT, &height);
+    gl->GetNamedRenderbufferParameteriv(buffer, GL_RENDERBUFFER_SAMPLES, &samples);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        GLint size = 0;
+        gl->GetNamedRenderbufferParameteriv(buffer, sizes[i], &size);
+        bits += size;
+    }
+    return (size_t)width * (size_t)height * (samples > 1 ? (size_t)samples : 1) * (size_t)bits / 8;
+}
+
+size_t gl_alive_bytes(struct gl *gl)
+{
+    enum { NAMES = 1 << 14 }; /* drivers count up from 1 */
+    size_t bytes = 0;
+    for (GLuint name = 1; name < NAMES; name++) {
+        GLint64 size = 0;
+        if (gl->IsBuffer(name))
+            gl->GetNamedBufferParameteri64v(name, GL_BUFFER_SIZE, &size);
+        bytes += (size_t)size;
+        if (gl->IsTexture(name))
+            bytes += texture_bytes(gl, name);
+        if (gl->IsRenderbuffer(name))
+            bytes += renderbuffer_bytes(gl, name);
+    }
+    return bytes;
+}
+
 static int full_pyramid(int width_px, int height_px, int depth)
 {
     int side = width_px > height_px ? width_px : height_px, levels = 1;

@@ -1,0 +1,275 @@
+/* Checks at the ends: no size, place or number gives NaN or silence; a right picture, or a refusal
+ * with a reason. */
+#include "conform/trial.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct shot {
+    const char *name;
+    size_t trees;
+    double eye_m[3], target_m[3];
+    bool covers, bounded; /* coverage is the reference's; nothing far from the only tree */
+};
+
+static enum status shoot(struct subject *subject, const struct shot *shot)
+{
+    struct trial_request request = {
+        .world.trees = shot->trees, .format = TARGET_RGBA16F, .lod = LOD_AUTO};
+    struct trial trial;
+    struct view view;
+    struct frame *frame;
+    enum status status;
+    subject_say(subject, "%s", shot->name);
+    if (subject_is_treeless(subject))
+        request.world.trees = 0;
+    subject->skipped = false;
+    if ((status = trial_open(subject, &request, &trial)))
+        return status;
+    world_view(trial.scene, &trial.world, shot->eye_m, shot->target_m, &view);
+    status = trial_draw(&trial, &view, &frame);
+    if (!status && request.world.trees && shot->covers)
+        status = trial_covers(&trial, frame, &view);
+    if (!status && request.world.trees && shot->bounded)
+        status = trial_bounded(&trial, frame, &view);
+    trial_close(&trial);
+    return status;
+}
+
+static enum status check_million(struct subject *subject)
+{
+    return shoot(
+        subject,
+        &(struct shot){"a million trees", 1000000, {0, 400, 7000}, {0, 0, 5000}, true, false});
+}
+
+static enum status check_pixel(struct subject *subject)
+{
+    /* 48 rows at 0.7 rad: 20 m are a pixel at 1,315 m. */
+    static const struct shot shots[] = {
+        {"a tree of a pixel", 1, {0, 100, 1300}, {0, 10, 0}, false, true},
+        {"a tree below a pixel", 1, {0, 300, 6000}, {0, 10, 0}, false, true},
+        {"a forest of trees of a pixel", 2500, {0, 500, 1300}, {0, 10, 0}, true, false},
+        {"a forest of trees below a pixel", 2500, {0, 1500, 4000}, {0, 10, 0}, true, false},
+    };
+    enum status status = STATUS_OK;
+    for (size_t i = 0; i < sizeof shots / sizeof *shots && !status; i++)
+        if ((status = shoot(subject, &shots[i])))
+            error_context(subject->error, "%s", shots[i].name);
+    return status;
+}
+
+static enum status check_close(struct subject *subject)
+{
+    static const struct shot shots[] = {
+        {"a tree that fills the picture", 1, {3, 12, 9}, {0, 12, 0}, true, false},
+        {"a tree around the camera", 1, {1.5, 12, 1}, {0, 12.5, -9}, true, false},
+        {"the camera within a trunk", 1, {0, 2, 0}, {5, 2.5, -5}, false, false},
+        {"the camera at a tree's foot", 1, {0, 0, 0}, {0, 1, 0.5}, false, false},
+        {"straight up, below a tree", 1, {2, 1, 0}, {2, 9, 0}, true, false},
+    };
+    enum status status = STATUS_OK;
+    for (size_t i = 0; i < sizeof shots / sizeof *shots && !status; i++)
+        if ((status = shoot(subject, &shots[i])))
+            error_context(subject->error, "%s", shots[i].name);
+    return status;
+}
+
+/* Straight down is the limit of tilting: a thousandth of a radian beside it the picture is the
+ * same. */
+static enum status check_down(struct subject *subject)
+{
+    static const double LIMIT = 0.02;
+    struct trial_request request = {.world.trees = 16, .format = TARGET_RGBA32F};
+    struct trial trial;
+    struct frame *frames[2];
+    enum status status = trial_open(subject, &request, &trial);
+    if (status)
+        return status;
+    for (int i = 0; i < 2 && !status; i++) {
+        struct view view;
+        world_view(trial.scene, &trial.world, (double[3]){1, 90, 2},
+                   (double[3]){1, 0, 2 - 0.09 * i}, &view);
+        status = trial_draw(&trial, &view, &frames[i]);
+    }
+    if (!status) {
+        double difference = frame_difference(frames[0], frames[1]).mean;
+        subject_note(subject, "tilted by 0.001 rad %.2g", difference);
+        if (difference > LIMIT)
+            status = subject_fail(subject, "tilted by 0.001 rad the picture differs by %.3g",
+                                  difference);
+    }
+    trial_close(&trial);
+    return status;
+}
+
+/* Mean over pixels where neither picture has plants: the terrain and the sky. */
+static double bare_difference(const struct frame *a, const struct frame *b)
+{
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < (size_t)a->width_px * (size_t)a->height_px; i++) {
+        const float *p = a->rgba + 4 * i, *q = b->rgba + 4 * i;
+        if (p[3] > 0.001f || q[3] > 0.001f)
+            continue;
+        for (int c = 0; c < 3; c++)
+            sum += fabs((double)p[c] - q[c]);
+        count += 3;
+    }
+    return count > 0 ? sum / count : 0;
+}
+
+static enum status check_sun(struct subject *subject)
+{
+    static const double BARE = 0.005, NUDGE = 0.002;
+    static const struct {
+        const char *name;
+        float direction[2][3]; /* the sun's, and a thousandth of a radian beside it */
+    } suns[] = {
+        {"at the zenith", {{0, 1, 0}, {0, 1, 0.001f}}},
+        {"at the horizon", {{0, 0, 1}, {0, 0.001f, 1}}},
+        {"below the horizon", {{0.6f, -0.8f, 0}, {0.6f, -0.8f, 0.001f}}},
+        {"at the nadir", {{0, -1, 0}, {0, -1, 0.001f}}},
+    };
+    struct trial_request request = {.world.trees = 3, .format = TARGET_RGBA32F};
+    struct trial trial;
+    struct view view;
+    enum status status = trial_open(subject, &request, &trial);
+    if (status)
+        return status;
+    world_view_near(trial.scene, &trial.world, &view);
+    for (size_t s = 0; s < sizeof suns / sizeof *suns && !status; s++) {
+        struct frame *frames[2], *reference;
+        subject_say(subject, "the sun %s", suns[s].name);
+        for (int i = 1; i >= 0 && !status; i--) {
+            memcpy(view.sun_direction, suns[s].direction[i], sizeof view.sun_direction);
+            status = trial_draw(&trial, &view, &frames[i]);
+        }
+        if (!status)
+            status = trial_reference(&trial, &view, trial.workspace.effects, &reference);
+        if (status)
+            break;
+        double bare = bare_difference(frames[0], reference);
+        double nudged = frame_difference(frames[0], frames[1]).mean;
+        if (bare > BARE)
+            status = subject_fail(subject,
+                                  "the sun %s: terrain and sky differ by %.3g from the "
+                                  "reference",
+                                  suns[s].name, bare);
+        else if (nudged > NUDGE)
+            status = subject_fail(subject,
+                                  "the sun %s: 0.001 rad beside it the picture differs by "
+                                  "%.3g",
+                                  suns[s].name, nudged);
+    }
+    trial_close(&trial);
+    return status;
+}
+
+/* All lengths times a number: the same picture. Rounding moves some edges. */
+static enum status check_scale(struct subject *subject)
+{
+    static const double scales[] = {1, 1e-3, 1e6}, LIMIT = 0.01;
+    struct frame *frames[3];
+    for (int i = 0; i < 3; i++) {
+        struct trial_request request = {
+            .world = {.trees = 9, .scale = scales[i]}, .format = TARGET_RGBA32F, .lod = LOD_AUTO};
+        subject_say(subject, "scale %g", scales[i]);
+        enum status status = trial_picture(subject, &request, NULL, &frames[i]);
+        if (status)
+            return error_context(subject->error, "scale %g", scales[i]);
+        double difference = frame_difference(frames[i], frames[0]).mean;
+        if (i)
+            subject_note(subject, "scale %g %.2g", scales[i], difference);
+        if (difference > LIMIT)
+            return subject_fail(subject, "scale %g: differs from scale 1 by %.3g in the mean",
+                                scales[i], difference);
+    }
+    return STATUS_OK;
+}
+
+static enum status check_tiny(struct subject *subject)
+{
+    static const int sizes[][2] = {{1, 1}, {1, 29}, {31, 1}, {3, 2}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        struct frame *frame;
+        struct trial_request request = {
+            .world = {.trees = 4, .width_px = sizes[i][0], .height_px = sizes[i][1]},
+            .format = TARGET_RGBA16F,
+            .lod = LOD_AUTO};
+        subject_say(subject, "%d x %d", sizes[i][0], sizes[i][1]);
+        if (trial_picture(subject, &request, NULL, &frame))
+            return error_context(subject->error, "%d x %d", sizes[i][0], sizes[i][1]);
+    }
+    return STATUS_OK;
+}
+
+enum { HUGE_PX = 8192, SMALL_PX = 64, BOX_PX = HUGE_PX / SMALL_PX };
+
+/* The picture's means over boxes, strip by strip, so that it is never whole in memory twice. */
+static void boxes_read(struct trial *trial, struct frame *small)
+{
+    struct gl *gl = trial->workspace.gl;
+    float *strip = ARENA_ARRAY(trial->arena, float, (size_t)4 * HUGE_PX * BOX_PX);
+    for (int row = 0; row < SMALL_PX; row++) {
+        const float *pixels = strip;
+        if (gl) {
+            gl->BindFramebuffer(GL_READ_FRAMEBUFFER, trial->target.framebuffer);
+            gl->ReadPixels(0, HUGE_PX - (row + 1) * BOX_PX, HUGE_PX, BOX_PX, GL_RGBA, GL_FLOAT,
+                           strip);
+        } else {
+            pixels = trial->target.pixels + (size_t)4 * HUGE_PX * BOX_PX * (size_t)row;
+        }
+        float *sums = small->rgba + (size_t)4 * SMALL_PX * (size_t)row;
+        for (size_t i = 0; i < (size_t)HUGE_PX * BOX_PX; i++)
+            for (size_t c = 0; c < 4; c++)
+                sums[4 * (i % HUGE_PX / BOX_PX) + c] +=
+                    pixels[4 * i + c] / ((float)BOX_PX * BOX_PX);
+    }
+}
+
+/* 8 bits a channel: 0.5 GB with the depth. Compared with the reference of one pixel a box. */
+static enum status check_huge(struct subject *subject)
+{
+    static const double LIMIT = 0.03;
+    struct trial_request request = {
+        .world = {.trees = 3, .width_px = HUGE_PX, .height_px = HUGE_PX}, .lod = LOD_AUTO};
+    struct trial trial;
+    struct view view;
+    enum status status = trial_open(subject, &request, &trial);
+    if (status)
+        return status;
+    world_view_near(trial.scene, &trial.world, &view);
+    status = trial_draw_only(&trial, &view);
+    struct frame *small = frame_create(trial.arena, SMALL_PX, SMALL_PX, false), *reference;
+    if (!status) {
+        boxes_read(&trial, small);
+        view.width_px = view.height_px = SMALL_PX;
+        status = frame_check(small, subject->error);
+    }
+    if (!status)
+        status = trial_reference(&trial, &view, trial.workspace.effects, &reference);
+    for (size_t i = 0; i < (size_t)4 * SMALL_PX * SMALL_PX && !status; i++)
+        reference->rgba[i] = fminf(reference->rgba[i], 1);
+    if (!status && !(subject->method->traits & TRAIT_NO_TREES))
+        status = trial_covers(&trial, small, &view);
+    double bare = status ? 0 : bare_difference(small, reference);
+    if (bare > LIMIT)
+        status = subject_fail(subject, "terrain and sky differ by %.3g from the reference", bare);
+    trial_close(&trial);
+    return status;
+}
+
+const struct check checks_extremes[] = {
+    {"pixel", "trees of a pixel and below, alone and in a forest", check_pixel, false},
+    {"close", "a tree that fills the picture, around the camera, and the camera within its trunk",
+     check_close, false},
+    {"down", "straight down is the limit of tilting", check_down, false},
+    {"sun", "the sun at the zenith, the horizon, below it and at the nadir", check_sun, false},
+    {"scale", "a world of a thousandth and of a million times the size gives the same picture",
+     check_scale, false},
+    {"tiny", "pictures of 1 x 1, 1 x n and n x 1 pixels", check_tiny, false},
+    {"huge", "a picture of 8192 x 8192 pixels", check_huge, false},
+    {"million", "a million trees", check_million, false},
+    {NULL, NULL, NULL, false},
+};

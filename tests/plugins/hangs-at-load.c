@@ -1,0 +1,25 @@
+/* Is never loaded. */
+#include "wrap.h"
+
+#include <unistd.h>
+
+__attribute__((constructor)) static void hang(void)
+{
+    for (volatile bool on = true; on;)
+        usleep(1000);
+}
+
+static enum status prepare(struct workspace *workspace, const struct scene *scene,
+                           const void *options, void **state)
+{
+    (void)options;
+    return wrap_prepare(workspace, scene, state);
+}
+
+static enum status draw(struct workspace *workspace, void *state, const struct view *view,
+                        struct target *target)
+{
+    return wrap_draw(workspace, state, view, target);
+}
+
+WRAP_METHOD(hangs_at_load, "hangs-at-load", WRAP_TRAITS);

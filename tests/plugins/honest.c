@@ -1,0 +1,17 @@
+/* A plugin that keeps the contract: every check must pass. */
+#include "wrap.h"
+
+static enum status prepare(struct workspace *workspace, const struct scene *scene,
+                           const void *options, void **state)
+{
+    (void)options;
+    return wrap_prepare(workspace, scene, state);
+}
+
+static enum status draw(struct workspace *workspace, void *state, const struct view *view,
+                        struct target *target)
+{
+    return wrap_draw(workspace, state, view, target);
+}
+
+WRAP_METHOD(honest, "honest", WRAP_TRAITS);
