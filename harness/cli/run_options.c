@@ -1,6 +1,8 @@
 /* The command line of `treeline run`. */
 #include "cli/run.h"
 
+#include "plan/settings.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,41 +81,54 @@ struct parsing {
     const char **scenes, **methods, **cells;
 };
 
+/* The value of an option whose range a row of the settings says. */
+static double setting(const struct argp_state *state, const char *option, const char *text,
+                      const char *name)
+{
+    const struct option *row = plan_settings_table;
+    while (strcmp(row->name, name) != 0)
+        row++;
+    if (row->type == OPTION_INT)
+        return cli_integer(state, option, text, (int)row->minimum, (int)row->maximum);
+    return cli_number(state, option, text, row->minimum, row->maximum);
+}
+
 static error_t parse_measuring(int key, const char *text, const struct argp_state *state,
                                struct plan_request *plan)
 {
     switch (key) {
     case KEY_ROUNDS:
-        plan->rounds = cli_integer(state, "rounds", text, 1, 10000);
+        plan->rounds = (int)setting(state, "rounds", text, "rounds");
         return 0;
     case KEY_FRAME_SECONDS:
-        plan->frame_seconds = cli_number(state, "frame-seconds", text, 0.001, 3600);
+        plan->frame_seconds = setting(state, "frame-seconds", text, "frame_seconds");
         return 0;
     case KEY_FRAMES_MAX:
-        plan->frames_max = cli_integer(state, "frames-max", text, 1, 100000);
+        plan->frames_max = (int)setting(state, "frames-max", text, "frames_max");
         return 0;
     case KEY_VIEWS:
-        plan->views_count = (size_t)cli_integer(state, "views", text, 1, 64);
+        plan->views_count = (size_t)setting(state, "views", text, "views");
         return 0;
     case KEY_TIMEOUT:
-        plan->timeout_seconds = cli_number(state, "timeout", text, 0.05, 86400);
+        plan->timeout_seconds = setting(state, "timeout", text, "timeout_seconds");
         return 0;
     case KEY_MEMORY:
         plan->memory_bytes = cli_bytes(state, "memory", text);
         plan->memory_given = true;
         return 0;
     case KEY_THREADS:
-        plan->threads = cli_integer(state, "threads", text, 0, 1024);
+        plan->threads = (int)setting(state, "threads", text, "threads");
         plan->threads_given = true;
         return 0;
     case KEY_BACKEND:
         plan->backend = text;
         return 0;
     case KEY_REFERENCE_ERROR:
-        plan->reference_error = cli_number(state, "reference-error", text, 1e-5, 1);
+        plan->reference_error = setting(state, "reference-error", text, "reference_error");
         return 0;
     case KEY_REFERENCE_SAMPLES:
-        plan->reference_samples_max = cli_integer(state, "reference-samples", text, 16, 1 << 20);
+        plan->reference_samples_max =
+            (int)setting(state, "reference-samples", text, "reference_samples_max");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
