@@ -96,6 +96,25 @@ static void test_plan__a_cell_stands_once(void **state)
     arena_destroy(arena);
 }
 
+/* Also where all of them have the same name: nobody waits for a billion that are one. */
+static void test_plan__more_than_100000_cells_are_refused(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    char *many = arena_strdup(arena, "");
+    for (int i = 0; i < 400; i++)
+        many = arena_printf(arena, "%s%s1", many, i ? "," : "");
+    const char *sizes = "8x8",
+               *spec = arena_printf(arena, "billboards:views=%s,samples=%s", many, many);
+    refused(&(struct plan_request){ONE_SCENE, .methods = &spec, .methods_count = 1, .trees = "1"},
+            STATUS_INVALID, "more than 100000 cells", "");
+    for (int i = 1; i < 400; i++)
+        sizes = arena_printf(arena, "%s,8x8", sizes);
+    refused(&(struct plan_request){ONE_SCENE, ONE_METHOD, .trees = many, .sizes = sizes},
+            STATUS_INVALID, "more than 100000 cells", "");
+    arena_destroy(arena);
+}
+
 static void test_plan__the_standard_trees_are_the_scenes_own(void **state)
 {
     (void)state;
@@ -405,6 +424,7 @@ int main(void)
         cmocka_unit_test(test_plan__lists_multiply),
         cmocka_unit_test(test_plan__an_item_without_equals_continues_the_option_before_it),
         cmocka_unit_test(test_plan__a_cell_stands_once),
+        cmocka_unit_test(test_plan__more_than_100000_cells_are_refused),
         cmocka_unit_test(test_plan__the_standard_trees_are_the_scenes_own),
         cmocka_unit_test(test_cell_parse__every_name_of_a_plan_can_be_pasted_back),
         cmocka_unit_test(test_cell_parse__missing_parts_are_the_defaults),

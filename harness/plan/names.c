@@ -241,15 +241,18 @@ static void cell_set_grow(struct cell_set *set)
         *cell_set_slot(set, set->cells[i].name) = i + 1;
 }
 
-void cell_set_add(struct cell_set *set, const struct cell *cell)
+enum status cell_set_add(struct cell_set *set, const struct cell *cell, struct error *error)
 {
+    if (set->asked++ == CELLS_MAX)
+        return error_set(error, STATUS_INVALID, "the plan asks for more than %d cells", CELLS_MAX);
     if (set->count == set->capacity)
         cell_set_grow(set);
     size_t *slot = cell_set_slot(set, cell->name);
     if (*slot)
-        return;
+        return STATUS_OK;
     set->cells[set->count++] = *cell;
     *slot = set->count;
+    return STATUS_OK;
 }
 
 /* One swept option: its name and the values it takes. */
@@ -333,9 +336,10 @@ enum status method_expand(struct cell_set *set, const char *spec, const struct c
         struct cell one = cell;
         one.options = options;
         status = cell_complete(arena, &one, summary, error);
+        if (!status)
+            status = cell_set_add(set, &one, error);
         if (status)
             return status;
-        cell_set_add(set, &one);
     } while (sweeps_next(sweeps, count));
     return STATUS_OK;
 }

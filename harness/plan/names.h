@@ -8,11 +8,13 @@
 #define CELL_SEED 1
 #define CELL_TREES_MAX 4000000
 #define CELL_SIDE_MAX_PX 16384
+#define CELLS_MAX 100000
 
 /* A growing array of cells, each name once. */
 struct cell_set {
     struct arena *arena;
     size_t count, capacity;
+    size_t asked; /* cells added, those of a name that was there included */
     struct cell *cells;
     size_t slots_count;
     size_t *slots; /* open addressing: index + 1 of a cell, 0: free */
@@ -22,8 +24,8 @@ struct cell_set {
 enum status text_split(struct arena *arena, const char *what, const char *text, char ***items,
                        size_t *count, struct error *error);
 
-/* Adds a copy of the cell unless a cell of that name is there. */
-void cell_set_add(struct cell_set *set, const struct cell *cell);
+/* Adds a copy of the cell unless a cell of that name is there. STATUS_INVALID after CELLS_MAX. */
+enum status cell_set_add(struct cell_set *set, const struct cell *cell, struct error *error);
 
 /* "NAME:opt=1,2,opt=x" to cells that differ in method, method_name and options only; scene and the
  * rest are copied from pattern, then completed from the scene's summary and added. */

@@ -13,8 +13,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define CELLS_MAX 100000
-
 /* What one group of a plan sweeps over. */
 struct group {
     const char *const *scenes;
@@ -199,8 +197,6 @@ static enum status patterns_expand(struct cell_set *set, const struct group *gro
         for (size_t m = 0; m < group->methods_count; m++)
             if ((status = method_expand(set, group->methods[m], &pattern, summary, error)))
                 return status;
-        if (set->count > CELLS_MAX)
-            return error_set(error, STATUS_INVALID, "the plan has more than %d cells", CELLS_MAX);
     }
     return STATUS_OK;
 }
@@ -264,8 +260,8 @@ static enum status cells_make(struct cell_set *set, const struct plan_request *r
             continue;
         if (!group->scenes_count || !group->methods_count)
             return error_set(error, request->plan_path ? STATUS_INVALID : STATUS_USAGE,
-                             "%s: no %s; name a plan, or a scene and a method, or a cell",
-                             request->plan_path ? request->plan_path : "nothing to run",
+                             "%sno %s; name a plan, or a scene and a method, or a cell",
+                             request->plan_path ? "" : "nothing to run: ",
                              group->scenes_count ? "method" : "scene");
         status = group_expand(set, group, seed, error);
     }
@@ -276,7 +272,7 @@ static enum status cells_make(struct cell_set *set, const struct plan_request *r
             struct cell cell;
             status = cell_parse(set->arena, lists[l][i], &cell, error);
             if (!status)
-                cell_set_add(set, &cell);
+                status = cell_set_add(set, &cell, error);
         }
     if (!status && request->filter)
         status = cells_filter(set, request->filter, error);
@@ -347,10 +343,11 @@ enum status plan_load(struct arena *arena, const struct plan_request *request, s
     if (!status)
         status = backend_check(backend, error);
     struct cell_set set = {.arena = arena};
-    if (!status)
-        status = cells_make(&set, request, &file, error);
     if (status)
         return status;
+    status = cells_make(&set, request, &file, error);
+    if (status)
+        return path ? error_context(error, "plan %s", path) : status;
     struct plan *made = ARENA_NEW(arena, struct plan);
     made->name = path ? path_stem(arena, path) : "command-line";
     made->cells = set.cells;
