@@ -1,8 +1,8 @@
 /* Mesh files through assimp's C interface: the only file that knows assimp. */
 #include "base/color.h"
 #include "base/file.h"
+#include "wall/mesh_import_check.h"
 #include "wall/mesh_import_parts.h"
-#include "wall/mesh_import_ply.h"
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/cimport.h>
@@ -286,6 +286,8 @@ enum status mesh_import_assimp(struct arena *arena, const char *path, size_t tri
     /* OBJ has colours only by a custom that stores encoded ones; glTF's are linear. */
     bool colors_encoded = path_ends_with(path, ".obj");
     if (path_ends_with(path, ".ply") && ply_check(path, &colors_encoded, error) != STATUS_OK)
+        return STATUS_INVALID;
+    if (path_ends_with(path, ".glb") && glb_check(path, error) != STATUS_OK)
         return STATUS_INVALID;
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     aiSetImportPropertyInteger(properties, AI_CONFIG_PP_SBP_REMOVE,

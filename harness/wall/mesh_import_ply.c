@@ -1,5 +1,5 @@
 /* A look at a PLY file before assimp reads it: is it whole, and how are its colours stored? */
-#include "wall/mesh_import_ply.h"
+#include "wall/mesh_import_check.h"
 
 #include "base/file.h"
 

@@ -13,8 +13,8 @@
 #include "scene/scene.h"
 #include "truth/frame.h"
 #include "truth/frame_image.h"
+#include "wall/mesh_import_check.h"
 #include "wall/mesh_import_parts.h"
-#include "wall/mesh_import_ply.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -206,11 +206,13 @@ static void fuzz_results(struct fuzz *fuzz)
     }
 }
 
+/* The looks before assimp reads. */
 static void fuzz_ply(struct fuzz *fuzz)
 {
     const char *path = fuzz_file(fuzz, "check.ply");
     bool encoded;
     fuzz_accepted(fuzz, ply_check(path, &encoded, &fuzz->error), path);
+    fuzz_accepted(fuzz, glb_check(path, &fuzz->error), path);
 }
 
 /* The endings that a mesh's first bytes speak for. */
