@@ -42,6 +42,7 @@ part threads make -s -j"$jobs" CC=clang config=thread test T="test_metrics test_
 part clang build CC=clang all
 part egl make -s -j"$jobs" gl=egl test T="test_gl test_conform"
 part cli tests/cli.sh
+part bad-input tests/bad_input.sh
 part fuzz make -s -j"$jobs" fuzz FUZZ_SECONDS=60
 part smoke tests/smoke.sh
 part page tests/page.sh
