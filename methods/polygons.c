@@ -9,8 +9,9 @@
  * (bake/sift.h): most of a forest's are smaller than a pixel. */
 #include "bake/backdrop.h"
 #include "bake/levels.h"
-#include "bake/plant_gl.h"
+#include "bake/plant_draws.h"
 #include "bake/sampling.h"
+#include "bake/sift_gl.h"
 #include "bake/sift_plant.h"
 #include "base/random.h"
 #include "method/method.h"
@@ -20,8 +21,7 @@
 #include <math.h>
 #include <string.h>
 
-/* TRIANGLES_ROOM: of each stream of a thread, drawn at a time. */
-enum { PROBES_MAX = 512, SPECIES_MAX = 64, TRIANGLES_ROOM = 1 << 15 };
+enum { PROBES_MAX = 512, SPECIES_MAX = 64 };
 
 struct options {
     int samples;
@@ -66,7 +66,7 @@ static const char *const variant_defines[VARIANTS] = {"",
                                                       "SIFTED 1\nLEAF 1",
                                                       "SIFTED 1\nLIT_AT_VERTICES 1"};
 
-/* A species. Its groups of instances: one a detail level, then LEVELS_RUNS a step of pruning. */
+/* A species. */
 struct kind {
     bool drawn; /* some tree is of it */
     struct levels levels;
@@ -75,12 +75,6 @@ struct kind {
     uint32_t probes_count;
     struct prune_vertex *probes; /* some elements, for the plant's mean radiance */
     uint32_t first_group, groups_count;
-};
-
-struct command { /* DrawElementsIndirectCommand */
-    uint32_t count, instances, first_index;
-    int32_t base_vertex;
-    uint32_t base_instance;
 };
 
 /* One call's worth of commands: which program, which mesh. */
@@ -104,17 +98,16 @@ struct state {
     uint8_t *runs;             /* instances_count: which run of elements */
     /* instanced drawing */
     GLuint placed_buffer, command_buffer;
-    size_t commands_room, commands_count;
-    struct command *commands;
+    size_t commands_room;
+    struct plant_command *commands;
     struct call *calls; /* of a frame: one a batch and one a kind's pruning at most */
     uint32_t *groups;   /* instances_count */
     uint32_t *first;    /* groups_count + 1 */
     size_t groups_count;
-    /* sifted drawing; sift NULL: none */
-    struct sift *sift;
+    /* sifted drawing, if any */
+    struct sift_gl sifted;
     struct sift_tree *sift_trees; /* instances_count */
     struct sift_run *sift_runs;
-    GLuint sift_vertices, sift_buffer;
 };
 
 static const int samples_of_word[] = {1, 4, 16};
@@ -156,7 +149,7 @@ static enum status prepare_kind(struct workspace *workspace, struct state *state
     levels_fill(&kind->levels, mesh, detail, prune, taper_of(state));
     if (prune)
         keep_probes(workspace->arena, kind, prune);
-    if (state->sift) {
+    if (state->sifted.sift) {
         kind->sift = sift_plant_create(workspace->arena, detail, prune, &kind->levels, species);
     } else {
         plant_gl_detail(workspace, detail, &kind->levels, state->placed_buffer, &kind->gpu);
@@ -177,7 +170,7 @@ static enum status prepare_programs(struct workspace *workspace, struct state *s
         wanted[VARIANT_PRUNED] |= state->kinds[k].gpu.pruned > 0;
     }
     for (int v = VARIANT_SIFTED; v < VARIANTS; v++)
-        wanted[v] = state->sift;
+        wanted[v] = state->sifted.sift;
     for (int v = 0; v < VARIANTS; v++) {
         if (!wanted[v])
             continue;
@@ -203,8 +196,7 @@ static void prepare_instances(struct workspace *workspace, struct state *state)
         struct kind *kind = &state->kinds[k];
         bounds[k] = kind->levels.bound;
         kind->first_group = (uint32_t)state->groups_count;
-        kind->groups_count =
-            (uint32_t)kind->levels.levels_count + kind->levels.steps_count * LEVELS_RUNS;
+        kind->groups_count = plant_groups_count(&kind->levels);
         state->groups_count += kind->groups_count;
         calls_room += kind->gpu.batches_count + 1;
         state->commands_room += kind->groups_count * (kind->gpu.batches_count + 1);
@@ -215,7 +207,7 @@ static void prepare_instances(struct workspace *workspace, struct state *state)
     state->runs = ARENA_ARRAY(arena, uint8_t, count);
     for (size_t i = 0; i < count; i++)
         state->runs[i] = (uint8_t)(random_mix(workspace->seed + i) % LEVELS_RUNS);
-    if (state->sift) {
+    if (state->sifted.sift) {
         state->sift_trees = ARENA_ARRAY(arena, struct sift_tree, count);
         state->sift_runs = ARENA_ARRAY(arena, struct sift_run, count * runs_room);
         return;
@@ -223,17 +215,16 @@ static void prepare_instances(struct workspace *workspace, struct state *state)
     state->groups = ARENA_ARRAY(arena, uint32_t, count);
     state->first = ARENA_ARRAY(arena, uint32_t, state->groups_count + 1);
     state->calls = ARENA_ARRAY(arena, struct call, calls_room);
-    state->commands = ARENA_ARRAY(arena, struct command, state->commands_room);
+    state->commands = ARENA_ARRAY(arena, struct plant_command, state->commands_room);
     state->command_buffer =
-        gl_buffer(workspace->gl, (GLsizeiptr)(state->commands_room * sizeof(struct command)), NULL,
-                  GL_DYNAMIC_STORAGE_BIT);
+        gl_buffer(workspace->gl, (GLsizeiptr)(state->commands_room * sizeof(struct plant_command)),
+                  NULL, GL_DYNAMIC_STORAGE_BIT);
 }
 
 /* Sifts where that pays and is possible. */
 static enum status prepare_sift(struct workspace *workspace, struct state *state)
 {
-    struct gl *gl = workspace->gl;
-    bool use = state->options->sift && gl->software && state->kinds_count <= SPECIES_MAX;
+    bool use = state->options->sift && workspace->gl->software && state->kinds_count <= SPECIES_MAX;
     for (size_t k = 0; k < state->kinds_count && use; k++) {
         const struct mesh *mesh;
         enum status status = STATUS_OK;
@@ -245,20 +236,7 @@ static enum status prepare_sift(struct workspace *workspace, struct state *state
     }
     if (!use)
         return STATUS_OK;
-    state->sift = sift_create(workspace->arena, workspace->threads, TRIANGLES_ROOM);
-    size_t bytes = sift_vertices_count(state->sift) * sizeof(struct sift_vertex);
-    state->sift_buffer = gl_buffer(gl, (GLsizeiptr)bytes, NULL, GL_MAP_WRITE_BIT);
-    GLuint array = state->sift_vertices = gl_vertex_array(gl);
-    static const size_t offsets[3] = {offsetof(struct sift_vertex, position_m),
-                                      offsetof(struct sift_vertex, normal),
-                                      offsetof(struct sift_vertex, albedo)};
-    static const GLenum types[3] = {GL_FLOAT, GL_SHORT, GL_UNSIGNED_SHORT};
-    gl->VertexArrayVertexBuffer(array, 0, state->sift_buffer, 0, sizeof(struct sift_vertex));
-    for (GLuint i = 0; i < 3; i++) {
-        gl->VertexArrayAttribFormat(array, i, i ? 4 : 3, types[i], i > 0, (GLuint)offsets[i]);
-        gl->VertexArrayAttribBinding(array, i, 0);
-        gl->EnableVertexArrayAttrib(array, i);
-    }
+    sift_gl_create(workspace, &state->sifted);
     return STATUS_OK;
 }
 
@@ -281,7 +259,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
             sampling_prepare(workspace, samples_of_word[made->options->samples], &made->sampling);
     if (status == STATUS_OK)
         status = prepare_sift(workspace, made);
-    if (!made->sift)
+    if (!made->sifted.sift)
         made->placed_buffer = gl_buffer(
             workspace->gl, (GLsizeiptr)(scene->instances_count * sizeof(struct plant_gl_placed)),
             NULL, GL_MAP_WRITE_BIT);
@@ -313,29 +291,6 @@ static struct levels_choice choose(const struct state *state, const struct level
     return levels_choose(levels, per_m);
 }
 
-static struct plant_gl_placed place_tree(const struct state *state, const struct kind *kind,
-                                         const struct instance *instance, uint32_t group,
-                                         float per_m)
-{
-    uint32_t place = group - kind->first_group;
-    struct plant_gl_placed placed = {
-        .scale = instance->scale,
-        .turn = {cosf(instance->rotation_rad), sinf(instance->rotation_rad)},
-    };
-    memcpy(placed.foot_m, instance->position_m, sizeof instance->position_m);
-    if (place < kind->levels.levels_count)
-        return placed;
-    place -= (uint32_t)kind->levels.levels_count;
-    int step = (int)(place / LEVELS_RUNS);
-    struct levels_run run =
-        levels_run_of(&kind->levels, step, per_m, state->options->smooth, taper_of(state));
-    placed.kept = run.kept;
-    placed.growth = run.growth;
-    placed.begin = (float)levels_begin(&kind->levels, place % LEVELS_RUNS);
-    placed.stout = ((float)kind->levels.step_stout[step] - 0.5f) / 65535;
-    return placed;
-}
-
 /* Culls, chooses and groups the trees, and uploads what the shaders need of each. */
 static struct cull_list place_trees(struct workspace *workspace, struct state *state,
                                     const struct view *view)
@@ -351,10 +306,7 @@ static struct cull_list place_trees(struct workspace *workspace, struct state *s
         const struct kind *kind = &state->kinds[scene->instances[at].species];
         struct levels_choice choice =
             choose(state, &kind->levels, per_m_of(state, view, focal_px, &list, i));
-        state->groups[i] = kind->first_group + choice.level;
-        if (choice.step >= 0)
-            state->groups[i] = kind->first_group + (uint32_t)kind->levels.levels_count +
-                               (uint32_t)choice.step * LEVELS_RUNS + state->runs[at];
+        state->groups[i] = kind->first_group + plant_group(&kind->levels, &choice, state->runs[at]);
     }
     cull_group(state->cull, &list, state->groups, state->groups_count, state->first);
     if (list.count == 0)
@@ -365,48 +317,12 @@ static struct cull_list place_trees(struct workspace *workspace, struct state *s
     for (uint32_t group = 0; group < state->groups_count; group++)
         for (uint32_t i = state->first[group]; i < state->first[group + 1]; i++) {
             const struct instance *instance = &scene->instances[list.instances[i]];
-            placed[i] = place_tree(state, &state->kinds[instance->species], instance, group,
-                                   per_m_of(state, view, focal_px, &list, i));
+            const struct kind *kind = &state->kinds[instance->species];
+            placed[i] = plant_place(&kind->levels, group - kind->first_group, instance,
+                                    per_m_of(state, view, focal_px, &list, i), taper_of(state));
         }
     gl->UnmapNamedBuffer(state->placed_buffer);
     return list;
-}
-
-/* What a batch (NULL: the pruned elements) draws for the trees of a group; nothing: a count of 0.
- */
-static struct detail_range group_range(const struct kind *kind, const struct plant_gl_batch *batch,
-                                       uint32_t group)
-{
-    struct detail_range none = {0, 0};
-    const struct levels *levels = &kind->levels;
-    uint32_t count = (uint32_t)levels->levels_count;
-    if (group < count)
-        return batch ? batch->levels[group] : none;
-    uint32_t step = (group - count) / LEVELS_RUNS, run = (group - count) % LEVELS_RUNS;
-    if (batch)
-        return batch->kind == MATERIAL_BARK ? batch->stout[step] : none;
-    return (struct detail_range){3 * levels_begin(levels, run), 3 * levels->step_elements[step]};
-}
-
-/* Commands of one batch for every group that has trees; returns their triangles. */
-static uint64_t add_commands(struct state *state, const struct kind *kind,
-                             const struct plant_gl_batch *batch)
-{
-    uint64_t triangles = 0;
-    for (uint32_t g = 0; g < kind->groups_count; g++) {
-        uint32_t base = state->first[kind->first_group + g];
-        uint32_t trees = state->first[kind->first_group + g + 1] - base;
-        struct detail_range range = group_range(kind, batch, g);
-        if (trees == 0 || range.indices_count == 0)
-            continue;
-        state->commands[state->commands_count++] =
-            (struct command){.count = range.indices_count,
-                             .instances = trees,
-                             .first_index = range.first_index,
-                             .base_instance = base};
-        triangles += (uint64_t)range.indices_count / 3 * trees;
-    }
-    return triangles;
 }
 
 /* Mean radiances of bark and leaves of a species, for elements that stand for many. */
@@ -419,7 +335,7 @@ static void mean_uniforms(struct workspace *workspace, const struct state *state
     char name[32];
     prune_mean_radiance(kind->probes, kind->probes_count, state->scene, workspace->effects, view,
                         mean);
-    snprintf(name, sizeof name, "mean[%d]", state->sift ? (int)(2 * k) : 0);
+    snprintf(name, sizeof name, "mean[%d]", state->sifted.sift ? (int)(2 * k) : 0);
     gl->Uniform3fv(gl_uniform(gl, program, name), 2, mean[0]);
 }
 
@@ -443,18 +359,9 @@ static void draw_call(struct workspace *workspace, const struct state *state,
     if (call->batch && call->batch->closed)
         gl->Enable(GL_CULL_FACE);
     gl_multi_draw_elements_indirect(gl, GL_TRIANGLES, GL_UNSIGNED_INT,
-                                    call->first * sizeof(struct command), (GLsizei)call->count,
-                                    call->triangles);
+                                    call->first * sizeof(struct plant_command),
+                                    (GLsizei)call->count, call->triangles);
     gl->Disable(GL_CULL_FACE);
-}
-
-static struct call make_call(struct state *state, const struct kind *kind,
-                             const struct plant_gl_batch *batch)
-{
-    struct call call = {.kind = kind, .batch = batch, .first = state->commands_count};
-    call.triangles = add_commands(state, kind, batch);
-    call.count = state->commands_count - call.first;
-    return call;
 }
 
 static void draw_instanced(struct workspace *workspace, struct state *state,
@@ -465,70 +372,27 @@ static void draw_instanced(struct workspace *workspace, struct state *state,
     size_t calls_count = 0;
     if (place_trees(workspace, state, view).count == 0)
         return;
-    state->commands_count = 0;
+    size_t commands = 0;
     for (size_t k = 0; k < state->kinds_count; k++) {
         const struct kind *kind = &state->kinds[k];
-        for (size_t b = 0; b < kind->gpu.batches_count; b++)
-            calls[calls_count++] = make_call(state, kind, &kind->gpu.batches[b]);
-        if (kind->levels.elements > 0)
-            calls[calls_count++] = make_call(state, kind, NULL);
+        size_t batches = kind->gpu.batches_count;
+        for (size_t b = 0; b < batches + (kind->levels.elements > 0); b++) {
+            struct call *call = &calls[calls_count++];
+            *call = (struct call){.kind = kind, .first = commands};
+            call->batch = b < batches ? &kind->gpu.batches[b] : NULL;
+            call->count =
+                plant_commands(&kind->levels, call->batch, state->first + kind->first_group,
+                               state->commands + commands, &call->triangles);
+            commands += call->count;
+        }
     }
     gl->NamedBufferSubData(state->command_buffer, 0,
-                           (GLsizeiptr)(state->commands_count * sizeof *state->commands),
-                           state->commands);
+                           (GLsizeiptr)(commands * sizeof *state->commands), state->commands);
     gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, state->command_buffer);
     for (size_t c = 0; c < calls_count; c++)
         if (calls[c].count > 0)
             draw_call(workspace, state, &calls[c], view);
     gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
-}
-
-/* What one tree draws: its batches at a level, or a run of pruned elements over whole bark. */
-static size_t add_runs(const struct state *state, const struct kind *kind, uint32_t run,
-                       float per_m, struct sift_run *runs)
-{
-    const struct levels *levels = &kind->levels;
-    const struct sift_plant *plant = kind->sift;
-    struct levels_choice choice = choose(state, levels, per_m);
-    size_t count = 0;
-    for (size_t b = 0; b < plant->batches_count; b++) {
-        bool pruned = choice.step >= 0;
-        uint32_t level = pruned ? levels->step_bark[choice.step] : choice.level;
-        const struct sift_set *set = plant->sets[b][plant->bark[b] ? level : 0];
-        size_t kept = pruned ? plant->stout[b][choice.step] : set->count;
-        if (kept > 0)
-            runs[count++] = (struct sift_run){.set = set, .kept = (float)kept, .growth = 1};
-    }
-    if (choice.step >= 0) {
-        struct levels_run kept =
-            levels_run_of(levels, choice.step, per_m, state->options->smooth, taper_of(state));
-        runs[count++] = (struct sift_run){.set = plant->pruned,
-                                          .begin = levels_begin(levels, run),
-                                          .kept = kept.kept,
-                                          .growth = kept.growth,
-                                          .taper = taper_of(state),
-                                          .stout = levels->step_stout[choice.step]};
-    }
-    return count;
-}
-
-static void draw_streams(struct workspace *workspace, const struct state *state)
-{
-    struct gl *gl = workspace->gl;
-    gl->BindVertexArray(state->sift_vertices);
-    for (int stream = 0; stream < SIFT_STREAMS; stream++) {
-        GLuint program = state->programs[VARIANT_SIFTED + stream];
-        bool begun = false;
-        for (int thread = 0; thread < sift_threads(state->sift); thread++) {
-            struct sift_span span = sift_left(state->sift, stream, thread);
-            if (span.count == 0)
-                continue;
-            if (!begun)
-                gl->UseProgram(program);
-            begun = true;
-            gl_draw_arrays(gl, GL_TRIANGLES, (GLint)span.first, (GLsizei)span.count, 1);
-        }
-    }
 }
 
 /* drawn: view with the size of what is bound. */
@@ -549,9 +413,13 @@ static void draw_sifted(struct workspace *workspace, struct state *state, const 
                                    .low_m = kind->levels.low_m,
                                    .high_m = kind->levels.high_m,
                                    .radius_m = kind->levels.radius_m};
+        float per_m = per_m_of(state, view, focal_px, &list, i);
+        struct sift_part part = {.choice = choose(state, &kind->levels, per_m),
+                                 .run = state->runs[at],
+                                 .per_m = per_m,
+                                 .taper = taper_of(state)};
         tree->runs_count =
-            add_runs(state, kind, state->runs[at], per_m_of(state, view, focal_px, &list, i),
-                     state->sift_runs + runs);
+            sift_plant_runs(kind->sift, &kind->levels, &part, state->sift_runs + runs);
         runs += tree->runs_count;
     }
     for (int v = VARIANT_SIFTED; v < VARIANTS; v++) {
@@ -563,18 +431,10 @@ static void draw_sifted(struct workspace *workspace, struct state *state, const 
             if (v == VARIANT_SIFTED + SIFT_LIT && state->kinds[k].probes_count > 0)
                 mean_uniforms(workspace, state, program, k, view);
     }
-    sift_begin(state->sift, drawn, sampling_places(state->sampling), state->sift_trees, list.count,
-               state->sift_runs);
-    for (bool left = list.count > 0; left;) {
-        size_t bytes = sift_vertices_count(state->sift) * sizeof(struct sift_vertex);
-        struct sift_vertex *vertices =
-            gl->MapNamedBufferRange(state->sift_buffer, 0, (GLsizeiptr)bytes,
-                                    GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
-        left = sift_fill(state->sift, vertices);
-        gl->UnmapNamedBuffer(state->sift_buffer);
-        if (left)
-            draw_streams(workspace, state);
-    }
+    sift_begin(state->sifted.sift, drawn, sampling_places(state->sampling), state->sift_trees,
+               list.count, state->sift_runs);
+    if (list.count > 0)
+        sift_gl_draw(workspace, &state->sifted, state->programs + VARIANT_SIFTED);
 }
 
 static enum status draw(struct workspace *workspace, void *state, const struct view *view,
@@ -586,7 +446,7 @@ static enum status draw(struct workspace *workspace, void *state, const struct v
     if (status != STATUS_OK)
         return status;
     backdrop_draw(workspace, own->backdrop, &drawn);
-    if (own->sift)
+    if (own->sifted.sift)
         draw_sifted(workspace, own, view, &drawn);
     else /* error_px refers to the picture's size */
         draw_instanced(workspace, own, view);

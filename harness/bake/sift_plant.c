@@ -104,3 +104,29 @@ struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *d
         plant->pruned = set_of_pruned(arena, prune, species);
     return plant;
 }
+
+size_t sift_plant_runs(const struct sift_plant *plant, const struct levels *levels,
+                       const struct sift_part *part, struct sift_run *runs)
+{
+    int step = part->choice.step;
+    bool pruned = step >= 0;
+    size_t count = 0;
+    for (size_t b = 0; b < plant->batches_count; b++) {
+        uint32_t level = pruned ? levels->step_bark[step] : part->choice.level;
+        const struct sift_set *set = plant->sets[b][plant->bark[b] ? level : 0];
+        size_t kept = pruned ? plant->stout[b][step] : set->count;
+        if (kept > 0)
+            runs[count++] = (struct sift_run){.set = set, .kept = (float)kept, .growth = 1};
+    }
+    if (pruned) {
+        struct levels_run kept =
+            levels_run_of(levels, step, part->per_m, part->taper > 0, part->taper);
+        runs[count++] = (struct sift_run){.set = plant->pruned,
+                                          .begin = levels_begin(levels, part->run),
+                                          .kept = kept.kept,
+                                          .growth = kept.growth,
+                                          .taper = part->taper,
+                                          .stout = levels->step_stout[step]};
+    }
+    return count;
+}

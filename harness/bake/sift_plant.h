@@ -27,4 +27,14 @@ struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *d
                                      const struct prune *prune, const struct levels *levels,
                                      uint32_t species);
 
+/* What one tree draws: its batches at a level, or a run of pruned elements over whole bark. At most
+ * batches_count + 1 runs; returns how many. */
+struct sift_part {
+    struct levels_choice choice;
+    uint32_t run;       /* of pruned elements, the tree's own */
+    float per_m, taper; /* as in levels.h; taper 0: runs have the step's elements */
+};
+size_t sift_plant_runs(const struct sift_plant *plant, const struct levels *levels,
+                       const struct sift_part *part, struct sift_run *runs);
+
 #endif
