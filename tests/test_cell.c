@@ -86,7 +86,8 @@ static void test_cell__a_good_one_fills_what_it_measured(void **state)
     }
     assert_true(sum < wall && result.seconds <= wall);
     assert_true(result.first_frame_seconds > 0 && result.build_seconds > 0);
-    assert_true(result.warmup_frames >= 2 && result.peak_bytes > 1e6);
+    bool slow = result.first_frame_seconds >= 4 * plan->frame_seconds; /* then nothing warms up */
+    assert_true(result.warmup_frames >= (slow ? 1 : 2) && result.peak_bytes > 1e6);
     /* The target alone: 16-bit float RGBA and 32-bit depth. */
     assert_true(result.device_bytes >= 48 * 36 * (8 + 4));
     assert_true(result.draw_calls >= 1 && result.fragments >= 48 * 36);
