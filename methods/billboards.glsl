@@ -111,7 +111,8 @@ void main()
 #endif
     vec3 own = st.x * right[0] + st.y * up[0];
     for (int k = 0; k < VIEWS; k++)
-        set_picture(k, t, p, chosen[k], vec2(dot(own, right[k]), dot(own, up[k])), weights[k]);
+        set_picture(k, t, p, chosen[k], vec2(dot(own, right[k]), dot(own, up[k])), weights[k],
+                    level);
     float depth_m = first.depth_plane.x + first.depth_plane.y * st.x + first.depth_plane.z * st.y;
     set_corner(t, p, own, depth_m, level, uint(number));
 }

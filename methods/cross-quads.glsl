@@ -56,6 +56,6 @@ void main()
     st += margin * sign(st - 0.5 * (pic.bounds.xy + pic.bounds.zw));
 #endif
     vec3 own = st.x * pic.right_s.xyz + st.y * pic.up_t.xyz;
-    set_picture(0, t, p, index, st, 1.0);
+    set_picture(0, t, p, index, st, 1.0, level);
     set_corner(t, p, own, 0.0, level, uint(number * quads + fan % quads));
 }

@@ -130,6 +130,29 @@ static void test_cross_quads__half_planes_are_blended_from_back_to_front(void **
     }
 }
 
+/* A picture that is opaque up to its layer's border must end there, in every level: seen from the
+ * front the cylinder covers its 4 x 6 m. */
+static void test_cross_quads__a_picture_that_fills_its_layer_ends_at_the_border(void **state)
+{
+    struct fixture *f = *state;
+    struct plant *plant = opaque_plant(f->arena);
+    static const char *const options[] = {"alpha=blend,filter=bilinear,resolution=64",
+                                          "alpha=blend,filter=nearest,resolution=64"};
+    for (int k = 0; k < 2; k++) {
+        double drawn = 0, wanted = 0;
+        for (int i = 0; i < 8; i++) {
+            struct scene *scene = tree_scene(f->arena, plant, 1, 1);
+            float span_m = 40 + 3.1f * (float)i;
+            struct view view = tree_view(scene, 0, 0, 3000, span_m);
+            drawn += tree_mean(
+                tree_draw(f->arena, f->method, options[k], scene, EFFECT_AMBIENT, &view, NULL), 3);
+            wanted += 24 / (span_m * span_m);
+        }
+        if (fabs(drawn / wanted - 1) > 0.05)
+            fail_msg("%s: %.3f of the cylinder's area", options[k], drawn / wanted);
+    }
+}
+
 static void test_cross_quads__every_way_keeps_the_same_coverage(void **state)
 {
     struct fixture *f = *state;
@@ -183,6 +206,7 @@ int main(void)
         cmocka_unit_test(test_cross_quads__front_and_back_have_the_plants_outline),
         cmocka_unit_test(test_cross_quads__light_follows_the_sun_as_the_reference_does),
         cmocka_unit_test(test_cross_quads__half_planes_are_blended_from_back_to_front),
+        cmocka_unit_test(test_cross_quads__a_picture_that_fills_its_layer_ends_at_the_border),
         cmocka_unit_test(test_cross_quads__every_way_keeps_the_same_coverage),
         cmocka_unit_test(test_cross_quads__ten_thousand_trees_take_a_few_draw_calls),
         cmocka_unit_test(test_cross_quads__an_eye_in_the_crown_is_drawn),

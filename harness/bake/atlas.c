@@ -239,16 +239,6 @@ static GLuint create_array(struct gl *gl, const struct atlas *atlas, GLenum form
     return name;
 }
 
-/* Outside of a layer there is nothing: a picture that touches its layer's border must not smear
- * beyond it. */
-static void border(struct gl *gl, GLuint albedo, const float color[3])
-{
-    float rgba[4] = {color[0], color[1], color[2], 0};
-    gl->TextureParameteri(albedo, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-    gl->TextureParameteri(albedo, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-    gl->TextureParameterfv(albedo, GL_TEXTURE_BORDER_COLOR, rgba);
-}
-
 static void upload_picture(struct gl *gl, const struct atlas *atlas, const struct level *levels,
                            int layer)
 {
@@ -270,10 +260,7 @@ static void upload(struct workspace *workspace, struct arena *scratch,
 {
     struct gl *gl = workspace->gl;
     struct level *levels = levels_create(scratch, atlas);
-    float color[3] = {0, 0, 0};
-    int last = 0, layer = 0;
-    while (levels[last].width_px > 1 || levels[last].height_px > 1)
-        last++;
+    int layer = 0;
     /* Light varies less than coverage does: its nearest texel will do, at a third of the cost. */
     atlas->albedo =
         create_array(gl, atlas, GL_RGBA8,
@@ -285,12 +272,8 @@ static void upload(struct workspace *workspace, struct arena *scratch,
             expand(plants[i], view, atlas, levels[0].texels);
             build_levels(levels, request);
             upload_picture(gl, atlas, levels, layer);
-            for (size_t k = 0; k < 3; k++)
-                color[k] += levels[last].straight[k] / (float)atlas->layers;
             atlas->views[layer] = plants[i]->views[view];
         }
-    static const float none[3] = {0, 0, 0};
-    border(gl, atlas->albedo, request->alpha == ATLAS_BLEND ? none : color);
 }
 
 static void describe_species(const struct atlas_plant *plant, struct atlas_species *species)

@@ -91,6 +91,7 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     struct impostor *impostor = *result = ARENA_NEW(workspace->arena, struct impostor);
     impostor->scene = scene;
     impostor->alpha = request->alpha;
+    impostor->nearest = request->nearest;
     enum status status = backdrop_prepare(workspace, scene, &impostor->backdrop);
     if (status == STATUS_OK)
         status = atlas_build(workspace, scene, request, &impostor->atlas);
@@ -148,10 +149,10 @@ enum status impostor_program(struct workspace *workspace, const struct impostor 
                      shared[0], own[0], shared[1], own[1], shared[2], own[2]);
     static const char *const modes[] = {"", "STRAIGHT 1\nALPHA_TEST 1\n",
                                         "STRAIGHT 1\nALPHA_COVERAGE 1\n"};
-    const char *all =
-        arena_printf(scratch, "SUN_STEPS %d\n%s%s%s%s", IMPOSTOR_SUN_STEPS, defines ? defines : "",
-                     modes[impostor->alpha], impostor->atlas->depth ? "DEPTH 1\n" : "",
-                     workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
+    const char *all = arena_printf(
+        scratch, "SUN_STEPS %d\nNEAREST %d\n%s%s%s%s", IMPOSTOR_SUN_STEPS, impostor->nearest,
+        defines ? defines : "", modes[impostor->alpha], impostor->atlas->depth ? "DEPTH 1\n" : "",
+        workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
     enum status status = gl_program(workspace->gl, name, text, all, program, workspace->error);
     arena_destroy(scratch);
     return status;

@@ -40,7 +40,7 @@ uniform float pixel_m;    // metres across a pixel at a distance of 1 m
 uniform int last_level;
 
 out vec2 place[VIEWS];              // texture coordinates
-flat out vec2 layer_weight[VIEWS];
+flat out vec4 layer_weight[VIEWS];  // layer, weight, texels along its sides that fade at the border
 flat out vec4 light_factors[VIEWS]; // of the four channels
 flat out float light_rest[VIEWS];   // light without channels
 flat out vec4 shared_terms;         // albedo scale, level, radius (m, world), quad's number
@@ -84,13 +84,15 @@ vec2 triangle_corner(picture pic, int corner, float margin)
 }
 
 // Picture k of the quad: its light from the sun and its place st on the picture's plane.
-void set_picture(int k, tree t, plant p, int index, vec2 st, float weight)
+void set_picture(int k, tree t, plant p, int index, vec2 st, float weight, float level)
 {
     picture pic = pictures[index];
     sunlight sun = sunlights[index * SUN_STEPS + int(t.turn.w)];
     light_factors[k] = sun.factors;
     light_rest[k] = sun.rest.x;
-    layer_weight[k] = vec2(float(index), weight);
+    // The nearest texel of a minified picture ends sharply.
+    vec2 fade = NEAREST == 1 && level > 0.0 ? vec2(1e6) : layer_px * exp2(-level);
+    layer_weight[k] = vec4(float(index), weight, fade);
     place[k] = (st - vec2(pic.right_s.w, pic.up_t.w)) / (p.shape.z * layer_px);
 }
 
@@ -116,7 +118,7 @@ layout(binding = 0) uniform sampler2DArray albedo_map;
 layout(binding = 1) uniform sampler2DArray light_map;
 layout(binding = 2) uniform sampler2DArray depth_map;
 in vec2 place[VIEWS];
-flat in vec2 layer_weight[VIEWS];
+flat in vec4 layer_weight[VIEWS];
 flat in vec4 light_factors[VIEWS];
 flat in float light_rest[VIEWS];
 flat in vec4 shared_terms;
@@ -152,6 +154,13 @@ void main()
     for (int k = 0; k < VIEWS; k++) {
         vec3 at = vec3(place[k], layer_weight[k].x);
         vec4 texel = textureLod(albedo_map, at, shared_terms.y);
+        // Outside of a layer there is nothing, as with a border colour, with which llvmpipe filters slowly.
+        vec2 inside = clamp((0.5 - abs(place[k] - 0.5)) * layer_weight[k].zw + 0.5, 0.0, 1.0);
+#ifdef STRAIGHT
+        texel.a *= inside.x * inside.y;
+#else
+        texel *= inside.x * inside.y;
+#endif
         vec4 light = textureLod(light_map, at, shared_terms.y);
         float diffuse = light_rest[k] + dot(light, light_factors[k]);
         vec3 lit = texel.rgb * (sun_radiance * max(diffuse, 0.0) + ambient);

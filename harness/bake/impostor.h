@@ -1,6 +1,16 @@
 /* Trees drawn as textured quads: what billboards and crossed quads share. The atlas, the trees on
  * the GL, their order, the state of the three ways to treat coverage. The shader's part is
- * impostor.glsl. */
+ * impostor.glsl.
+ *
+ * What bounds them on llvmpipe with 2 threads, 800 x 600, 10,000 trees, a Xeon of 2026-11: the
+ * blocks of 4 x 4 pixels that the fragment stage takes, whole, wherever a tree's outline touches
+ * one. Seen from above billboards touch 86,000, 260 ns each (22 ms of the two threads' time; a
+ * third of it fetches colour, a fifth light), beside 2.8 ms of corners and setup in the calling
+ * thread; both threads never idle would be 12.3 ms a frame. Seen from the ground it is 174,000
+ * blocks, 147 ns each on average, 57 ns where all of a block lies behind nearer trees. Drawn a
+ * second time, when every tree is hidden by itself, a forest takes 0.7 to 0.9 of the first time:
+ * blocks at holes and edges are shaded again. So fewer blocks (outlines) and cheaper ones (one
+ * fetch) help; fewer draw calls or a faster sort (0.1 ms) do not. */
 #ifndef TREELINE_BAKE_IMPOSTOR_H
 #define TREELINE_BAKE_IMPOSTOR_H
 
@@ -17,6 +27,7 @@ struct impostor {
     struct cull *cull;
     struct backdrop *backdrop;
     enum atlas_alpha alpha;
+    bool nearest;    /* texels of minified pictures */
     GLuint vertices; /* no attributes; the index buffer of fans */
     GLuint instances_buffer, order_buffer;
     GLuint sunlights_buffer; /* pictures x IMPOSTOR_SUN_STEPS: what the sun makes of the channels */
