@@ -8,11 +8,13 @@
 #include "plan/names.h"
 #include "plan/settings.h"
 #include "plant/import_steps.h"
+#include "report/book.h"
 #include "results/calibration.h"
 #include "results/result.h"
 #include "scene/scene.h"
 #include "truth/frame.h"
 #include "truth/frame_image.h"
+#include "wall/json.h"
 #include "wall/mesh_import_check.h"
 #include "wall/mesh_import_parts.h"
 
@@ -206,6 +208,31 @@ static void fuzz_results(struct fuzz *fuzz)
     }
 }
 
+/* What the page says about a run, whatever its numbers are. */
+static void fuzz_report(struct fuzz *fuzz)
+{
+    const char *path = fuzz_file(fuzz, "cells.jsonl");
+    struct run *run = NULL;
+    if (run_read(fuzz->arena, path, &run, &fuzz->error) != STATUS_OK || run->results_count == 0)
+        return;
+    struct book *book = book_make(fuzz->arena, run);
+    char *page = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&page, &size);
+    answer_headline(book, out);
+    answer_fronts(book, out);
+    answer_overall(book, out);
+    fclose(out);
+    bool named = memmem(fuzz->bytes, fuzz->size, "nan", 3) != NULL;
+    if (!named && (strstr(page, ">nan") || strstr(page, " nan") || strstr(page, "-nan")))
+        fuzz_fail("no sentence says nan", page);
+    free(page);
+    const char *data = data_json(book, fuzz->arena);
+    struct json_doc *doc = json_parse(fuzz->arena, data, "data", &fuzz->error);
+    if (!doc)
+        fuzz_fail("the page's data is JSON", fuzz->error.text);
+}
+
 /* The looks before assimp reads. */
 static void fuzz_ply(struct fuzz *fuzz)
 {
@@ -317,6 +344,7 @@ static const struct fuzz_target {
     {"cell", "tests/fuzz/seeds/cell", false, fuzz_cell},
     {"options", "tests/fuzz/seeds/options", false, fuzz_options},
     {"results", "tests/fuzz/seeds/results", false, fuzz_results},
+    {"report", "tests/fuzz/seeds/results", false, fuzz_report},
     {"ply", "tests/fuzz/seeds/ply", false, fuzz_ply},
     {"mesh", "tests/fuzz/seeds/mesh", true, fuzz_mesh},
     {"soup", "tests/fuzz/seeds/soup", false, fuzz_soup},
