@@ -46,7 +46,7 @@ struct cli_shot {
     uint64_t seed;
     bool seed_given, has_eye, has_target, quiet;
     double time;
-    float eye_m[3], target_m[3];
+    double eye_m[3], target_m[3]; /* in scene.json's coordinates */
 };
 extern const struct argp cli_shot_argp; /* a child parser; its input is the struct cli_shot */
 /* The cell that a shot names; with_method false: the null method stands in. */

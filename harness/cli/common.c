@@ -65,12 +65,12 @@ uint64_t cli_seed(const struct argp_state *state, const char *option, const char
 }
 
 static void parse_vector(const struct argp_state *state, const char *option, const char *text,
-                         float vector[3])
+                         double vector[3])
 {
     char rest;
-    bool good = sscanf(text, "%f,%f,%f%c", &vector[0], &vector[1], &vector[2], &rest) == 3;
+    bool good = sscanf(text, "%lf,%lf,%lf%c", &vector[0], &vector[1], &vector[2], &rest) == 3;
     for (int i = 0; i < 3 && good; i++)
-        good = isfinite(vector[i]) && fabsf(vector[i]) <= 1e7f;
+        good = isfinite(vector[i]) && fabs(vector[i]) <= 1e7;
     if (!good)
         argp_failure(state, STATUS_USAGE, 0, "--%s: '%s' is not X,Y,Z in metres, each in +-1e7",
                      option, text);
@@ -177,9 +177,13 @@ void cli_shot_view(const struct cli_shot *shot, const struct scene *scene, struc
     view_at(scene, shot->time, view);
     if (shot->has_eye) {
         double time = view->time;
-        float sun[3];
+        float sun[3], eye_m[3], target_m[3];
+        for (int i = 0; i < 3; i++) {
+            eye_m[i] = (float)(shot->eye_m[i] - scene->origin_m[i]);
+            target_m[i] = (float)(shot->target_m[i] - scene->origin_m[i]);
+        }
         memcpy(sun, view->sun_direction, sizeof sun);
-        view_look_at(scene, shot->eye_m, shot->target_m, view);
+        view_look_at(scene, eye_m, target_m, view);
         memcpy(view->sun_direction, sun, sizeof sun);
         view->time = time;
     }

@@ -188,6 +188,34 @@ static enum status check_scale(struct subject *subject)
     return STATUS_OK;
 }
 
+/* A scene a thousand kilometres away: the same picture, by its own camera. */
+static enum status check_offset(struct subject *subject)
+{
+    static const double offsets_m[] = {0, 999000}, LIMIT = 0.001;
+    struct frame *frames[2];
+    for (int i = 0; i < 2; i++) {
+        struct trial_request request = {.format = TARGET_RGBA32F};
+        struct trial trial;
+        struct view view;
+        subject_say(subject, "offset %g m", offsets_m[i]);
+        if (world_write(subject->arena, subject->folder, offsets_m[i], &request.world.file,
+                        subject->error) ||
+            trial_open(subject, &request, &trial))
+            return subject->error->status;
+        view_at(trial.scene, 0, &view);
+        enum status status = trial_draw(&trial, &view, &frames[i]);
+        trial_close(&trial);
+        if (status)
+            return error_context(subject->error, "offset %g m", offsets_m[i]);
+    }
+    double difference = frame_difference(frames[0], frames[1]).mean;
+    subject_note(subject, "mean difference %.2g", difference);
+    if (difference > LIMIT)
+        return subject_fail(subject, "%g m from the origin the picture differs by %.3g in the mean",
+                            offsets_m[1], difference);
+    return STATUS_OK;
+}
+
 static enum status check_tiny(struct subject *subject)
 {
     static const int sizes[][2] = {{1, 1}, {1, 29}, {31, 1}, {3, 2}};
@@ -268,6 +296,8 @@ const struct check checks_extremes[] = {
     {"sun", "the sun at the zenith, the horizon, below it and at the nadir", check_sun, false},
     {"scale", "a world of a thousandth and of a million times the size gives the same picture",
      check_scale, false},
+    {"offset", "a scene a thousand kilometres from the origin gives the same picture", check_offset,
+     false},
     {"tiny", "pictures of 1 x 1, 1 x n and n x 1 pixels", check_tiny, false},
     {"huge", "a picture of 8192 x 8192 pixels", check_huge, false},
     {"million", "a million trees", check_million, false},

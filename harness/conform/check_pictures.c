@@ -104,7 +104,7 @@ static enum status check_one_tree(struct subject *subject)
 static enum status check_user_mesh(struct subject *subject)
 {
     const char *path;
-    enum status status = world_write(subject->arena, subject->folder, &path, subject->error);
+    enum status status = world_write(subject->arena, subject->folder, 0, &path, subject->error);
     return status ? status : one_tree(subject, path);
 }
 
@@ -151,13 +151,6 @@ static enum status pair_draw(struct subject *subject, unsigned effect, struct pa
         if (!status)
             status = trial_reference(&trial, &view, with ? own | effect : own & ~effect,
                                      &pair->traced[with]);
-        struct frame **both[2] = {&pair->drawn[with], &pair->traced[with]};
-        for (int k = 0; k < 2 && !status; k++) {
-            struct frame *kept = frame_create(subject->arena, view.width_px, view.height_px, false);
-            memcpy(kept->rgba, (*both[k])->rgba,
-                   4 * sizeof(float) * (size_t)view.width_px * (size_t)view.height_px);
-            *both[k] = kept;
-        }
         trial_close(&trial);
         if (status)
             return status;

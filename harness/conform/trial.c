@@ -121,7 +121,8 @@ enum status trial_draw(struct trial *trial, const struct view *view, struct fram
     enum status status = trial_draw_only(trial, view);
     if (status)
         return status;
-    struct frame *frame = frame_create(trial->arena, target->width_px, target->height_px, false);
+    struct frame *frame =
+        frame_create(trial->subject->arena, target->width_px, target->height_px, false);
     if (trial->workspace.gl)
         gl_target_read(trial->workspace.gl, target, frame->rgba);
     else
@@ -143,16 +144,15 @@ enum status trial_reference(struct trial *trial, const struct view *view, unsign
                                         .quiet = true};
     struct reference_stats stats;
     subject_say(trial->subject, "the reference");
-    return reference_render(trial->arena, trial->scene, view, &options, frame, &stats,
+    return reference_render(trial->subject->arena, trial->scene, view, &options, frame, &stats,
                             trial->subject->error);
 }
 
 enum status trial_picture(struct subject *subject, const struct trial_request *request,
-                          const struct view *given, struct frame **result)
+                          const struct view *given, struct frame **frame)
 {
     struct trial trial;
     struct view view;
-    struct frame *frame;
     enum status status = trial_open(subject, request, &trial);
     if (status)
         return status;
@@ -160,12 +160,7 @@ enum status trial_picture(struct subject *subject, const struct trial_request *r
         view = *given;
     else
         world_view_near(trial.scene, &trial.world, &view);
-    status = trial_draw(&trial, &view, &frame);
-    if (!status) {
-        *result = frame_create(subject->arena, frame->width_px, frame->height_px, false);
-        memcpy((*result)->rgba, frame->rgba,
-               4 * sizeof(float) * (size_t)frame->width_px * (size_t)frame->height_px);
-    }
+    status = trial_draw(&trial, &view, frame);
     trial_close(&trial);
     return status;
 }

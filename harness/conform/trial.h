@@ -23,7 +23,7 @@ struct trial {
     struct subject *subject;
     struct world world;
     const struct method *method;
-    struct arena *arena;        /* scene and pictures: not the method's */
+    struct arena *arena;        /* the scene's: not the method's */
     struct workspace workspace; /* its arena is the method's */
     struct scene *scene;
     struct target target;
@@ -37,7 +37,7 @@ enum status trial_open(struct subject *subject, const struct trial_request *requ
 void trial_close(struct trial *trial);
 
 /* One picture over a target that was spoiled first, checked (frame_check, GL errors), in the
- * trial's arena; frame may be NULL. */
+ * subject's arena; frame may be NULL. */
 enum status trial_draw(struct trial *trial, const struct view *view, struct frame **frame);
 /* draw and its errors alone. */
 enum status trial_draw_only(struct trial *trial, const struct view *view);
@@ -45,7 +45,7 @@ enum status trial_draw_only(struct trial *trial, const struct view *view);
 enum status trial_reference(struct trial *trial, const struct view *view, unsigned effects,
                             struct frame **frame);
 
-/* Opens, draws world_view_near or the given view, closes; the picture in the subject's arena. */
+/* Opens, draws world_view_near or the given view, closes. */
 enum status trial_picture(struct subject *subject, const struct trial_request *request,
                           const struct view *view, struct frame **frame);
 

@@ -116,7 +116,26 @@ static const struct mesh *world_mesh(struct arena *arena)
     return mesh;
 }
 
-enum status world_write(struct arena *arena, const char *folder, const char **path,
+static enum status scene_write(struct arena *arena, const char *folder, double offset_m,
+                               const char **path, struct error *error)
+{
+    const char *scene = arena_printf(
+        arena,
+        "{\"plants\": [{\"file\": \"tree.obj\", \"reach_m\": 25, \"import\": {\"height_m\": 20, "
+        "\"z_up\": true, \"leaf_albedo\": [0.2, 0.42, 0.1], \"bark_albedo\": [0.25, 0.18, 0.12]}}],"
+        "\"placement\": {\"kind\": \"file\", \"file\": \"tree-%.0f.txt\"},"
+        "\"trees\": {\"default\": 1}, \"effects\": [\"two-sided\", \"ambient\"],"
+        "\"camera\": {\"kind\": \"still\", \"keys\": [{\"eye\": [%.3f, 12.1, %.3f], "
+        "\"target\": [%.3f, 10, %.3f]}]}}",
+        offset_m, offset_m + 9.013, -offset_m + 34.507, offset_m + 0.101, -offset_m);
+    const char *tree = arena_printf(arena, "%.3f %.3f 30 1\n", offset_m + 0.203, -offset_m + 0.307);
+    const char *list = arena_printf(arena, "%s/tree-%.0f.txt", folder, offset_m);
+    *path = arena_printf(arena, "%s/tree-%.0f.json", folder, offset_m);
+    enum status status = file_write(list, tree, strlen(tree), error);
+    return status ? status : file_write(*path, scene, strlen(scene), error);
+}
+
+enum status world_write(struct arena *arena, const char *folder, double offset_m, const char **path,
                         struct error *error)
 {
     enum { LINE = 64 };
@@ -138,17 +157,8 @@ enum status world_write(struct arena *arena, const char *folder, const char **pa
                                      corner[1] + 1, corner[2] + 1);
         }
     }
-    static const char scene[] =
-        "{\"plants\": [{\"file\": \"tree.obj\", \"reach_m\": 25, \"import\": {\"height_m\": 20, "
-        "\"z_up\": true, \"leaf_albedo\": [0.2, 0.42, 0.1], \"bark_albedo\": [0.25, 0.18, 0.12]}}],"
-        "\"placement\": {\"kind\": \"grid\", \"extent_m\": 1, \"jitter\": 0},"
-        "\"terrain\": {\"size_m\": [400, 400]}, \"trees\": {\"default\": 1},"
-        "\"effects\": [\"two-sided\", \"ambient\"],"
-        "\"camera\": {\"kind\": \"still\", \"keys\": [{\"eye\": [0, 12, 40], "
-        "\"target\": [0, 10, 0]}]}}";
-    *path = arena_printf(arena, "%s/tree.json", folder);
     enum status status = file_write(arena_printf(arena, "%s/tree.obj", folder), text, size, error);
-    return status ? status : file_write(*path, scene, sizeof scene - 1, error);
+    return status ? status : scene_write(arena, folder, offset_m, path, error);
 }
 
 static void forest_make(struct arena *arena, struct scene *scene, size_t trees, float scale)

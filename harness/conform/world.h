@@ -21,9 +21,9 @@ enum status world_make(struct arena *arena, const struct world *world, struct sc
 
 /* Its trees, at scale 1. */
 #define WORLD_TREE_M 20.0
-/* The world's plant as FOLDER/tree.obj with z up and in another unit, and a scene of one such tree,
- * FOLDER/tree.json. */
-enum status world_write(struct arena *arena, const char *folder, const char **path,
+/* The world's plant as FOLDER/tree.obj with z up and in another unit, and a scene of one such tree
+ * without terrain, FOLDER/tree-OFFSET.json, this far from the origin along x and -z. */
+enum status world_write(struct arena *arena, const char *folder, double offset_m, const char **path,
                         struct error *error);
 
 /* From a point to a point, both before scaling; the sun is the world's. */

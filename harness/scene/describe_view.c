@@ -1,6 +1,7 @@
 /* scene.json: light, ambient, sky, fog, camera. */
 #include "scene/describe.h"
 
+#include <math.h>
 #include <string.h>
 
 static const double DEGREE = 0.017453292519943295;
@@ -43,8 +44,35 @@ void describe_light(struct json *root, struct description *description)
                   "density_per_m above 0");
 }
 
-static void describe_keys(struct arena *arena, struct json *camera, struct camera_path *path)
+/* Coordinates of some hundred kilometres leave 32-bit floats centimetres. Without a terrain, which
+ * is centred on the origin, the scene's own coordinates begin near the camera instead. */
+static void choose_origin(struct json *key, struct description *description)
 {
+    static const double FAR_M = 8192, STEP_M = 1024;
+    if (description->ground.given || description->camera_in_extents)
+        return;
+    for (size_t axis = 0; axis < 3; axis += 2) {
+        double at_m = json_element_number(key, "eye", axis, -1e6, 1e6);
+        if (fabs(at_m) > FAR_M)
+            description->origin_m[axis] = STEP_M * round(at_m / STEP_M);
+    }
+}
+
+/* False when there is no such point. */
+static bool describe_point(struct json *key, const char *name, const double origin_m[3],
+                           float point_m[3])
+{
+    if (!json_vector(key, name, point_m, 3, -1e6, 1e6))
+        return false;
+    for (size_t axis = 0; axis < 3; axis++)
+        point_m[axis] = (float)(json_element_number(key, name, axis, -1e6, 1e6) - origin_m[axis]);
+    return true;
+}
+
+static void describe_keys(struct arena *arena, struct json *camera, struct description *description)
+{
+    struct camera_path *path = &description->camera;
+    double *origin_m = description->origin_m;
     enum { KEYS_MAX = 1000 };
     static const size_t least[] = {1, 1, 2, 2, 2, 2}, most[] = {1, 1, 2, 2, 2, KEYS_MAX};
     size_t count = json_array(camera, "keys");
@@ -59,9 +87,11 @@ static void describe_keys(struct arena *arena, struct json *camera, struct camer
         struct json *key = json_element(camera, "keys", k);
         if (!key)
             return;
-        if (!json_vector(key, "eye", path->keys[k].eye_m, 3, -1e6, 1e6))
+        if (k == 0 && json_has(key, "eye"))
+            choose_origin(key, description);
+        if (!describe_point(key, "eye", origin_m, path->keys[k].eye_m))
             json_fail(key, "eye", "is missing; allowed: [x, y, z]");
-        if (!json_vector(key, "target", path->keys[k].target_m, 3, -1e6, 1e6))
+        if (!describe_point(key, "target", origin_m, path->keys[k].target_m))
             json_fail(key, "target", "is missing; allowed: [x, y, z]");
         if (memcmp(path->keys[k].eye_m, path->keys[k].target_m, sizeof(float[3])) == 0)
             json_fail(key, "target", "is the eye; allowed: another point");
@@ -78,8 +108,8 @@ void describe_camera(struct arena *arena, struct json *root, struct description 
     }
     path->kind =
         (enum path_kind)json_word(camera, "kind", "still|orbit|walk|approach|fly-over|keys", -1);
-    describe_keys(arena, camera, path);
     description->camera_in_extents = json_word(camera, "unit", "m|extent", 0) == 1;
+    describe_keys(arena, camera, description);
     description->extent_min_m = json_number(camera, "extent_min_m", 0, 0, 10000);
     if (!description->camera_in_extents && json_has(camera, "extent_min_m"))
         json_fail(camera, "extent_min_m", "means nothing to metres; allowed: with unit extent");

@@ -54,6 +54,7 @@ struct description {
     struct fog fog;
     struct camera_path
         camera;             /* keys in units of camera_unit_m, near_m and far_m 0 when automatic */
+    double origin_m[3];     /* as of struct scene; already taken from the keys */
     bool camera_in_extents; /* the keys' unit is the forest's half side, at least extent_min_m */
     bool ground_relative;   /* the keys' heights are above the terrain */
     double extent_min_m;

@@ -37,9 +37,9 @@ void place_tree(const struct description *description, uint64_t seed, size_t ind
                 double z_m, struct instance *instance)
 {
     struct random random = place_random(seed, SALT_TREE, index);
-    instance->position_m[0] = (float)x_m;
+    instance->position_m[0] = (float)(x_m - description->origin_m[0]);
     instance->position_m[1] = 0;
-    instance->position_m[2] = (float)z_m;
+    instance->position_m[2] = (float)(z_m - description->origin_m[2]);
     instance->species = place_species(description, &random);
     const float *scale = description->plants[instance->species].scale;
     instance->scale = scale[0] + (float)random_double(&random) * (scale[1] - scale[0]);

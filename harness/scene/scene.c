@@ -202,6 +202,7 @@ enum status scene_load(struct arena *arena, const char *name, const struct scene
     made->sun = description.sun;
     made->sky = description.sky;
     made->fog = description.fog;
+    memcpy(made->origin_m, description.origin_m, sizeof made->origin_m);
     memcpy(made->ambient, description.ambient, sizeof made->ambient);
     status = terrain_build(arena, &description, &made->terrain, error);
     if (status == STATUS_OK)

@@ -88,6 +88,8 @@ struct scene {
     struct species *species; /* those that have at least one instance */
     size_t instances_count;
     struct instance *instances;
+    double origin_m[3];  /* of all that follows, in scene.json's coordinates; y is 0; 0, 0 but where
+                            the camera is far away and no terrain is */
     float forest_half_m; /* half side of the square that holds the trees' feet */
     struct terrain terrain;
     struct sun sun;
