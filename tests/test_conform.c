@@ -9,6 +9,7 @@
 #include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -137,6 +138,46 @@ static void test_conform__each_way_to_misbehave_is_told_apart(void **unused)
     arena_destroy(arena);
 }
 
+static void test_conform__every_check_of_pictures_can_fail(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *check, *message;
+    } bends[] = {
+        {"options", "detail=10: pixel x 0, y 0: red is nan"},
+        {"sun-moved", "differs from a fresh start's"},
+        {"empty", "differs from the reference by"},
+        {"user-mesh", "coverage is 0, the reference's"},
+        {"lod", "lod=high errs by"},
+        {"pixel", "a forest of trees of a pixel: coverage is 0"},
+        {"close", "a tree that fills the picture: coverage is 0"},
+        {"down", "tilted by 0.001 rad the picture differs by"},
+        {"sun", "the sun below the horizon: terrain and sky differ by"},
+        {"scale", "scale 1e+06: differs from scale 1 by"},
+        {"offset", "999000 m from the origin the picture differs by"},
+        {"tiny", "1 x 1: pixel x 0, y 0: red is nan"},
+        {"huge", "terrain and sky differ by"},
+        {"million", "prepare failed and gave no reason"},
+    };
+    struct arena *arena = arena_create(0);
+    bool instrumented = dlsym(RTLD_DEFAULT, "__asan_init");
+    for (size_t b = 0; b < sizeof bends / sizeof *bends; b++) {
+        struct rows rows;
+        if (instrumented && strcmp(bends[b].check, "huge") == 0)
+            continue; /* slow */
+        setenv("BENDS", bends[b].check, 1);
+        enum status exit = conform(arena, plugin(arena, "bends"),
+                                   arena_printf(arena, "^%s$", bends[b].check), 60, &rows);
+        const struct conform_row *row = &rows.rows[0];
+        if (exit != STATUS_NONCONFORMING || rows.count != 1 || row->result != CONFORM_FAILED ||
+            !strstr(row->message, bends[b].message))
+            fail_msg("%s: exit %s, %zu rows: %s", bends[b].check, status_word(exit), rows.count,
+                     row->message);
+    }
+    unsetenv("BENDS");
+    arena_destroy(arena);
+}
+
 static void test_conform__a_refusal_with_a_reason_is_no_failure(void **unused)
 {
     (void)unused;
@@ -171,6 +212,7 @@ int main(void)
         cmocka_unit_test(test_conform__the_registered_methods_keep_the_contract),
         cmocka_unit_test(test_conform__a_plugin_that_keeps_the_contract_passes),
         cmocka_unit_test(test_conform__each_way_to_misbehave_is_told_apart),
+        cmocka_unit_test(test_conform__every_check_of_pictures_can_fail),
         cmocka_unit_test(test_conform__a_refusal_with_a_reason_is_no_failure),
         cmocka_unit_test(test_conform__loading_a_plugin_that_dies_leaves_this_process_alive),
     };
