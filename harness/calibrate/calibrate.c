@@ -13,6 +13,20 @@ const struct calibration_info calibration_table[CALIBRATION_COUNT] = {
 #undef CALIBRATION_ROW
 };
 
+const char *calibration_unit(enum calibration_kind kind, double *factor)
+{
+    static const struct {
+        const char *unit;
+        double factor;
+    } units[] = {
+        [CALIBRATION_FILL] = {"Mpix/s", 1e-6},      [CALIBRATION_TRIANGLES] = {"Mtri/s", 1e-6},
+        [CALIBRATION_VERTICES] = {"Mvert/s", 1e-6}, [CALIBRATION_CALLS] = {"kcalls/s", 1e-3},
+        [CALIBRATION_RAYS] = {"Mrays/s", 1e-6},     [CALIBRATION_MEMORY] = {"GB/s", 1e-9},
+    };
+    *factor = units[kind].factor;
+    return units[kind].unit;
+}
+
 enum { REPEATS = 11, LOOPS_MAX = 1 << 16 };
 
 static double pass_seconds(const struct work *work, size_t index, int loops)

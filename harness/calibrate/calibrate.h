@@ -55,6 +55,9 @@ struct calibration_info {
 };
 extern const struct calibration_info calibration_table[CALIBRATION_COUNT];
 
+/* The unit in which people read a rate of this kind, and what 1/s is multiplied by for it. */
+const char *calibration_unit(enum calibration_kind kind, double *factor);
+
 struct calibration_measure {
     struct interval rate;          /* units a second: median over repeats, 95 % interval; NaN: not
                                       measured */

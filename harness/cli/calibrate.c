@@ -59,21 +59,6 @@ static const struct argp_option options[] = {
     {0},
 };
 
-/* The unit in which people read a rate of this kind, and its factor. */
-static void unit_choose(enum calibration_kind kind, const char **unit, double *factor)
-{
-    static const struct {
-        const char *unit;
-        double factor;
-    } units[] = {
-        [CALIBRATION_FILL] = {"Mpix/s", 1e-6},      [CALIBRATION_TRIANGLES] = {"Mtri/s", 1e-6},
-        [CALIBRATION_VERTICES] = {"Mvert/s", 1e-6}, [CALIBRATION_CALLS] = {"kcalls/s", 1e-3},
-        [CALIBRATION_RAYS] = {"Mrays/s", 1e-6},     [CALIBRATION_MEMORY] = {"GB/s", 1e-9},
-    };
-    *unit = units[kind].unit;
-    *factor = units[kind].factor;
-}
-
 static void table_print(const struct calibration *calibration)
 {
     printf("%s, %s, %d x %d %s, %d threads", calibration->renderer, calibration->backend,
@@ -83,13 +68,12 @@ static void table_print(const struct calibration *calibration)
         printf(" of %.2f GHz", calibration->core_ghz);
     printf("; measured in %.1f s\n\n", calibration->seconds);
     printf("%-17s %9s %-8s  %-19s %13s %9s\n", "work", "rate", "unit", "95 % interval",
-           "a core's cycle", "px a tri");
+           "per core cycle", "px a tri");
     for (size_t i = 0; i < CALIBRATION_COUNT; i++) {
         const struct calibration_measure *measure = &calibration->measures[i];
         const struct calibration_info *info = &calibration_table[i];
         double cycles = calibration->threads * calibration->core_ghz * 1e9, factor;
-        const char *unit;
-        unit_choose(info->kind, &unit, &factor);
+        const char *unit = calibration_unit(info->kind, &factor);
         if (isnan(measure->rate.value)) {
             printf("%-17s %9s %s\n", info->field, "-", "not measured here");
             continue;

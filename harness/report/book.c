@@ -97,6 +97,21 @@ static void fill_errors(struct row *row)
     row->compared = !isnan(row->values[COLUMN_same_flip]);
 }
 
+/* Work a second, and how much of the machine's limit that is. */
+static void fill_rates(struct row *row)
+{
+    const struct limit *limit = &row->summary->limit;
+    double seconds = row->values[COLUMN_frame_seconds];
+    row->values[COLUMN_limit_fraction] = limit->fraction.value;
+    row->values[COLUMN_limit_fraction_low] = limit->fraction.low;
+    row->values[COLUMN_limit_fraction_high] = limit->fraction.high;
+    if (!(seconds > 0))
+        return;
+    row->values[COLUMN_trees_per_second] = (double)row->trees / seconds;
+    row->values[COLUMN_triangles_per_second] = row->values[COLUMN_triangles] / seconds;
+    row->values[COLUMN_fragments_per_second] = row->values[COLUMN_fragments] / seconds;
+}
+
 static void fill_row(struct arena *arena, struct row *row)
 {
     for (size_t i = 0; i < COLUMNS_COUNT; i++)
@@ -111,6 +126,7 @@ static void fill_row(struct arena *arena, struct row *row)
     row->values[COLUMN_frame_seconds_high] = row->summary->frame_seconds.high;
     if (row->values[COLUMN_frame_seconds] > 0)
         row->values[COLUMN_fps] = 1 / row->values[COLUMN_frame_seconds];
+    fill_rates(row);
     fill_errors(row);
 }
 

@@ -15,6 +15,12 @@
     X(frame_seconds_low, "s", 0, "lower end of its 95 % interval (below 3 repetitions: smallest)") \
     X(frame_seconds_high, "s", 0, "upper end of its 95 % interval (below 3 repetitions: largest)") \
     X(fps, "1/s", +1, "1 / frame_seconds")                                                         \
+    X(trees_per_second, "1/s", +1, "trees of the scene / frame_seconds")                           \
+    X(triangles_per_second, "1/s", +1, "triangles submitted / frame_seconds")                      \
+    X(fragments_per_second, "1/s", +1, "fragments / frame_seconds")                                \
+    X(limit_fraction, "", +1, "of the machine's limit that the cell reaches (results/README.md)")  \
+    X(limit_fraction_low, "", 0, "lower end: best rate, slowest frame time of the interval")       \
+    X(limit_fraction_high, "", 0, "upper end: median rate, fastest frame time of the interval")    \
     X(frames, "", 0, "timed frames of all repetitions")                                            \
     X(flicker_mean, "", -1, "rmse of the frame-to-frame change against the reference's")           \
     X(flicker_peak, "", -1, "its largest pair of views")                                           \
@@ -161,7 +167,13 @@ void theme_css(FILE *out);
 void theme_svg(const char *svg, const char *prefix, const char *title, bool alone, FILE *out);
 
 /* One static figure of the overview. Files FOLDER/NAME.{dat,gp,svg,png} and NAME-narrow.svg. */
-enum figure_kind { FIGURE_TRADE_SAME, FIGURE_TRADE_FULL, FIGURE_GROWTH, FIGURE_DISTANCE };
+enum figure_kind {
+    FIGURE_TRADE_SAME,
+    FIGURE_TRADE_FULL,
+    FIGURE_GROWTH,
+    FIGURE_DISTANCE,
+    FIGURE_ROOFLINE
+};
 struct figure {
     enum figure_kind kind;
     const char *name, *title;

@@ -26,6 +26,7 @@ const struct column column_table[COLUMNS_COUNT] = {
 const struct shown shown_table[] = {
     {COLUMN_frame_seconds, "frame", "ms", 1e3},
     {COLUMN_fps, "rate", "fps", 1},
+    {COLUMN_limit_fraction, "of limit", "%", 100},
     {COLUMN_same_flip, "FLIP, same effects", "", 1},
     {COLUMN_full_flip, "FLIP, all effects", "", 1},
     {COLUMN_same_rmse, "RMSE", "", 1},
@@ -41,6 +42,9 @@ const struct shown shown_table[] = {
     {COLUMN_triangles, "triangles", "", 1},
     {COLUMN_draw_calls, "draw calls", "", 1},
     {COLUMN_fragments, "fragments", "", 1},
+    {COLUMN_trees_per_second, "trees", "1/s", 1},
+    {COLUMN_triangles_per_second, "triangles", "M/s", 1e-6},
+    {COLUMN_fragments_per_second, "fragments", "Mpx/s", 1e-6},
 };
 const size_t shown_count = sizeof shown_table / sizeof *shown_table;
 

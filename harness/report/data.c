@@ -193,6 +193,7 @@ static void put_rows(struct json_out *out, const struct book *book)
         json_put_text(out, NULL, row->variant);
         json_put_text(out, NULL, row->seen->message);
         put_views(out, row);
+        json_put_text(out, NULL, limit_word(row->summary->limit.resource));
         json_close(out);
     }
     json_close(out);

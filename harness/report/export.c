@@ -42,7 +42,8 @@ static const char *state_word(const struct row *row)
 
 static void write_csv(const struct book *book, FILE *out)
 {
-    fputs("cell,scene,trees,width_px,height_px,seed,method,options,lod,target,status,on_front",
+    fputs("cell,scene,trees,width_px,height_px,seed,method,options,lod,target,status,on_front,"
+          "bound_by",
           out);
     for (size_t c = 0; c < COLUMNS_COUNT; c++)
         fprintf(out, ",%s", column_table[c].key);
@@ -58,8 +59,8 @@ static void write_csv(const struct book *book, FILE *out)
         csv_text(out, cell->method_name);
         fputc(',', out);
         csv_text(out, cell->options);
-        fprintf(out, ",%s,%s,%s,%d", lod_word(cell->lod), target_format_word(cell->format),
-                state_word(row), row->summary->on_front);
+        fprintf(out, ",%s,%s,%s,%d,%s", lod_word(cell->lod), target_format_word(cell->format),
+                state_word(row), row->summary->on_front, limit_word(row->summary->limit.resource));
         for (size_t c = 0; c < COLUMNS_COUNT; c++)
             fprintf(out, ",%s", number_exact(row->values[c]).text);
         fputc(',', out);
@@ -91,9 +92,11 @@ static void write_markdown(const struct book *book, FILE *out)
         fprintf(out, *shown->unit ? " %s [%s] |" : " %s |", shown->heading, shown->unit);
         if (shown->column == COLUMN_frame_seconds)
             fputs(" 95 % interval [ms] |", out);
+        if (shown->column == COLUMN_limit_fraction)
+            fputs(" bound by |", out);
     }
     fputs(" front |\n|:--|--:|:--|", out);
-    for (size_t c = 0; c < shown_count + 1; c++)
+    for (size_t c = 0; c < shown_count + 2; c++)
         fputs("--:|", out);
     fputs(":-:|\n", out);
     for (size_t i = 0; i < book->rows_count; i++) {
@@ -116,6 +119,8 @@ static void write_markdown(const struct book *book, FILE *out)
                         number_plain(row->values[COLUMN_frame_seconds_high] * 1e3, 3).text);
             else if (first)
                 fputs(" \u2013 |", out);
+            if (shown->column == COLUMN_limit_fraction)
+                fprintf(out, " %s |", limit_word(row->summary->limit.resource));
         }
         fprintf(out, " %s |\n", row->summary->on_front ? "*" : "");
     }
@@ -143,13 +148,15 @@ static void write_latex(const struct book *book, FILE *out)
     fputs("% Needs \\usepackage{booktabs}. Bold: on the front of frame time and FLIP.\n", out);
     fputs("\\begin{tabular}{lrl", out);
     for (size_t c = 0; c < shown_count; c++)
-        fputc('r', out);
+        fputs(shown_table[c].column == COLUMN_limit_fraction ? "rl" : "r", out);
     fputs("}\n\\toprule\nscene & trees & method", out);
     for (size_t c = 0; c < shown_count; c++) {
         fputs(" & ", out);
         tex_text(out, shown_table[c].heading);
         if (*shown_table[c].unit)
-            fprintf(out, " [%s]", shown_table[c].unit);
+            fprintf(out, *shown_table[c].unit == '%' ? " [\\%s]" : " [%s]", shown_table[c].unit);
+        if (shown_table[c].column == COLUMN_limit_fraction)
+            fputs(" & bound by", out);
     }
     fputs(" \\\\\n\\midrule\n", out);
     for (size_t i = 0; i < book->rows_count; i++) {
@@ -163,6 +170,8 @@ static void write_latex(const struct book *book, FILE *out)
             fputs(" & ", out);
             bool failed = !row->ok && shown_table[c].column == COLUMN_frame_seconds;
             tex_text(out, failed ? state_word(row) : shown_number(row, &shown_table[c]).text);
+            if (shown_table[c].column == COLUMN_limit_fraction)
+                fprintf(out, " & %s", limit_word(row->summary->limit.resource));
         }
         fputs(" \\\\\n", out);
     }

@@ -110,7 +110,9 @@ static void put_facts(const struct page *page)
     put_fact(page, "started", plain_date(page->arena, from->started));
     page_text(page, "</dl>\n<nav aria-label=\"sections\"><a href=\"#trade\">error and time</a>"
                     "<a href=\"#growth\">more trees</a><a href=\"#distance\">distance</a>"
-                    "<a href=\"#cost\">memory and build</a><a href=\"#pictures\">pictures</a>"
+                    "<a href=\"#cost\">memory and build</a>");
+    page_text(page, book->run->calibrations_count ? "<a href=\"#limit\">limits</a>" : "");
+    page_text(page, "<a href=\"#pictures\">pictures</a>"
                     "<a href=\"#results\">results</a><a href=\"#failures\">failures</a>"
                     "<a href=\"#provenance\">provenance</a><a href=\"#cite\">cite</a>"
                     "<a href=\"#redo\">redo</a></nav>\n");
@@ -141,8 +143,7 @@ static void put_figure(const struct page *page, const struct figure *figure, con
             figure->name, figure->name, figure->name, figure->name);
 }
 
-/* The static figures of these kinds: what is seen on paper and without the script. */
-static size_t put_figures(const struct page *page, enum figure_kind first, enum figure_kind last)
+size_t page_figures(const struct page *page, enum figure_kind first, enum figure_kind last)
 {
     static const char *const captions[] = {
         [FIGURE_TRADE_SAME] = "Error of the representation.",
@@ -150,13 +151,17 @@ static size_t put_figures(const struct page *page, enum figure_kind first, enum 
         [FIGURE_GROWTH] = ("Bars: 95 % intervals. Lines: a power law fitted to three or more tree "
                            "counts; N^(\u22121) means that twice the trees take twice the time."),
         [FIGURE_DISTANCE] = "One point a view; error of the representation.",
+        [FIGURE_ROOFLINE] = ("The nearer the line, the nearer the limit. Bars: 95 % intervals. A "
+                             "point above it mixes large and small triangles."),
     };
     size_t shown = 0;
     for (size_t i = 0; i < page->figures->count; i++) {
         const struct figure *figure = &page->figures->list[i];
         if (!figure->svg || figure->kind < first || figure->kind > last)
             continue;
-        page_text(page, shown++ ? "" : "<div class=\"still\"><div class=\"figures\">\n");
+        if (!shown++)
+            fprintf(page->out, "<div%s><div class=\"figures\">\n",
+                    figure->kind == FIGURE_ROOFLINE ? "" : " class=\"still\"");
         put_figure(page, figure, captions[figure->kind]);
     }
     page_text(page, shown ? "</div></div>\n" : "");
@@ -168,7 +173,7 @@ static void put_trade(const struct page *page)
     const struct book *book = page->book;
     page_text(page, "<h2 id=\"trade\">Error against time</h2>\n");
     page_live(page, "live-trade");
-    put_figures(page, FIGURE_TRADE_SAME, FIGURE_TRADE_FULL);
+    page_figures(page, FIGURE_TRADE_SAME, FIGURE_TRADE_FULL);
     answer_fronts(book, page->out);
     page_text(page, book->effects_differ
                         ? ""
@@ -186,13 +191,13 @@ static void put_growth_and_distance(const struct page *page)
 {
     page_text(page, "<h2 id=\"growth\">Frame rate against trees</h2>\n");
     page_live(page, "live-growth");
-    if (!put_figures(page, FIGURE_GROWTH, FIGURE_GROWTH))
+    if (!page_figures(page, FIGURE_GROWTH, FIGURE_GROWTH))
         page_text(page, "<p class=\"soft still\">No plot: no scene was drawn with two tree counts "
                         "or more.</p>\n");
     page_laws(page);
     page_text(page, "<h2 id=\"distance\">Error against distance</h2>\n");
     page_live(page, "live-distance");
-    if (!put_figures(page, FIGURE_DISTANCE, FIGURE_DISTANCE))
+    if (!page_figures(page, FIGURE_DISTANCE, FIGURE_DISTANCE))
         page_text(
             page,
             "<p class=\"soft still\">No plot: in every scene of this run the camera keeps its "
@@ -258,6 +263,7 @@ static void put_page(const struct page *page)
     put_trade(page);
     put_growth_and_distance(page);
     page_cost(page);
+    page_limit(page);
     page_text(page, "<h2 id=\"overall\">Each method over all scenes and tree counts</h2>\n");
     answer_overall(page->book, page->out);
     put_pictures(page);

@@ -25,6 +25,12 @@ void page_results(const struct page *page);
 void page_cost(const struct page *page);
 void page_laws(const struct page *page);
 
+/* Static figures of these kinds; how many there are. Rooflines stay where the script runs; what
+ * others show is drawn by the script, so they are seen on paper and without it. */
+size_t page_figures(const struct page *page, enum figure_kind first, enum figure_kind last);
+/* What the machine can do, and how near the cells come; nothing where it was not calibrated. */
+void page_limit(const struct page *page);
+
 /* Where the numbers come from: failures, provenance, how to cite, how to do it again. */
 void page_failures(const struct page *page);
 void page_provenance(const struct page *page);

@@ -16,6 +16,9 @@ static void put_number_cell(const struct page *page, const struct row *row,
         fprintf(page->out, "<span class=\"range\">%s to %s</span>",
                 number_plain(row->values[COLUMN_frame_seconds_low] * shown->scale, 3).text,
                 number_plain(row->values[COLUMN_frame_seconds_high] * shown->scale, 3).text);
+    if (shown->column == COLUMN_limit_fraction && row->summary->limit.resource)
+        fprintf(page->out, "<span class=\"range\">%s</span>",
+                limit_word(row->summary->limit.resource));
     page_text(page, "</td>");
 }
 

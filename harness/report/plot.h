@@ -56,6 +56,9 @@ enum status plot_growth(const struct book *book, size_t family, const char *fold
 /* Error against distance over a group's views. */
 enum status plot_distance(const struct book *book, const struct group *group, const char *folder,
                           struct figure *figure, struct error *error);
+/* Triangles a second against their size, and the machine's roof, of a group. */
+enum status plot_roofline(const struct book *book, const struct group *group, const char *folder,
+                          struct figure *figure, struct error *error);
 
 /* Runs gnuplot once over all figures and fills in their SVGs. */
 enum status plot_draw(const struct book *book, const char *folder, const struct figures *figures,

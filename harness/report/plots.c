@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 
-enum { FAMILIES_MAX = 6, KINDS_COUNT = 4 };
+enum { FAMILIES_MAX = 6, KINDS_COUNT = 5 };
 
 /* Keeps the figure if something was drawn. */
 static void keep(struct figures *figures)
@@ -25,6 +25,9 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
     keep(figures);
     if (status == STATUS_OK)
         status = plot_distance(book, group, folder, &figures->list[figures->count], error);
+    keep(figures);
+    if (status == STATUS_OK)
+        status = plot_roofline(book, group, folder, &figures->list[figures->count], error);
     keep(figures);
     return status;
 }

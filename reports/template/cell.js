@@ -16,6 +16,7 @@ const figures = (row) => [
   ["frames a second", plain(valueOf(row, "fps"))],
   [`${metric().heading}, same effects`, plain(errorOf(row, "same"))],
   [`${metric().heading}, all effects`, plain(errorOf(row, "full"))],
+  ...(row.bound ? [["of the machine's limit", `${plain(100 * valueOf(row, "limit_fraction"))} % of ${row.bound}`]] : []),
   ["memory, GL", `${plain(valueOf(row, "host_bytes") === null ? null : valueOf(row, "host_bytes") / 1e6)}, ${plain(valueOf(row, "device_bytes") === null ? null : valueOf(row, "device_bytes") / 1e6)} MB`],
 ];
 const pairs = (list) => list.map(([name, text]) => [make("dt", null, name), make("dd", null, text)]);

@@ -2,8 +2,8 @@
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
 const columns = Object.fromEntries(data.columns.map((column) => [column.key, column]));
-const rows = data.rows.map(([group, series, method, state, name, variant, message, views], index) => ({
-  index, series, state, name, variant, message, views,
+const rows = data.rows.map(([group, series, method, state, name, variant, message, views, bound], index) => ({
+  index, series, state, name, variant, message, views, bound,
   group: data.groups[group],
   method: data.methods[method],
   label: data.series[series],

@@ -25,7 +25,8 @@ const startTable = () => {
     const at = (key) => plain(valueOf(row, key) * shown.scale);
     return make("td.n", { "data-v": raw === null ? "" : value },
       isTime && !row.ok ? make("span.bad", null, row.state) : short(value),
-      isTime && row.ok ? make("span.range", null, `${at("frame_seconds_low")} to ${at("frame_seconds_high")}`) : "");
+      isTime && row.ok ? make("span.range", null, `${at("frame_seconds_low")} to ${at("frame_seconds_high")}`) : "",
+      data.columns[shown.column].key === "limit_fraction" && row.bound ? make("span.range", null, row.bound) : "");
   };
   const fronts = new Set(data.front);
   const line = (row) => make(row.ok ? (fronts.has(row.index) ? "tr.front" : "tr") : "tr.failed", null,

@@ -1,0 +1,388 @@
+/* Limits by hand arithmetic on a machine of round figures; the calibration's record; both in the
+ * report. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "report/report.h"
+#include "results/calibration.h"
+#include "results/limit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void check_near(double a, double b, double within)
+{
+    if (!(fabs(a - b) <= within))
+        fail_msg("%.17g is not %.17g within %g", a, b, within);
+}
+
+/* A machine of round figures, at its best. */
+static struct calibration round_machine(void)
+{
+    struct calibration made = {.width_px = 800,
+                               .height_px = 600,
+                               .format = TARGET_RGBA8,
+                               .threads = 2,
+                               .core_ghz = NAN,
+                               .seconds = 3.5,
+                               .backend = "osmesa",
+                               .renderer = "round"};
+    static const struct {
+        enum calibration_index index;
+        double rate, fragments;
+    } known[] = {
+        {CALIBRATION_fill_opaque, 500e6, 240000}, {CALIBRATION_triangles_culled, 50e6, 0},
+        {CALIBRATION_triangles_shared, 10e6, 2},  {CALIBRATION_quads_2px, 4e6, 16},
+        {CALIBRATION_quads_8px, 2e6, 64},         {CALIBRATION_quads_32px, 0.5e6, 512},
+        {CALIBRATION_vertices, 150e6, NAN},       {CALIBRATION_calls_bare, 2e6, NAN},
+    };
+    for (size_t i = 0; i < CALIBRATION_COUNT; i++)
+        made.measures[i] = (struct calibration_measure){{NAN, NAN, NAN}, NAN};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        made.measures[known[i].index] = (struct calibration_measure){
+            {0.5 * known[i].rate, 0.25 * known[i].rate, known[i].rate}, known[i].fragments};
+    return made;
+}
+
+static double triangle_rate(double fragments)
+{
+    struct calibration machine = round_machine();
+    struct interval rate = limit_triangle_rate(&machine, fragments);
+    if (isnan(rate.high))
+        return NAN;
+    check_near(rate.low / rate.high, 0.25, 1e-9);
+    check_near(rate.value / rate.high, 0.5, 1e-9);
+    return rate.high;
+}
+
+static void test_limit__a_triangle_s_rate_goes_with_its_size(void **state)
+{
+    (void)state;
+    check_near(triangle_rate(0), 50e6, 1);
+    /* Half of them meet two fragments each: 0.02 and 0.1 us. */
+    check_near(triangle_rate(1), 1e6 / 0.06, 1);
+    check_near(triangle_rate(2), 10e6, 1);
+    check_near(triangle_rate(16), 4e6, 1);
+    check_near(triangle_rate(32), sqrt(4e6 * 2e6), 1); /* midway in logarithms */
+    check_near(triangle_rate(512), 0.5e6, 1);
+    check_near(triangle_rate(240000), 500e6 / 240000, 1e-3);
+    check_near(triangle_rate(480000), 500e6 / 480000, 1e-3);
+    assert_true(isnan(triangle_rate(NAN)));
+}
+
+/* A cell of 800 x 600 px that used so much of everything, in a frame of so many seconds. */
+static struct limit limit_with(double calls, double vertices, double primitives, double fragments,
+                               double frame_seconds)
+{
+    struct calibration machine = round_machine();
+    struct result result = {.cell = {.width_px = 800, .height_px = 600}};
+    result.draw_calls = calls;
+    result.vertices = vertices;
+    result.primitives = primitives;
+    result.fragments = fragments;
+    return limit_of(&machine, &result,
+                    (struct interval){frame_seconds, 0.5 * frame_seconds, 4 * frame_seconds});
+}
+
+static void check_limit(struct limit limit, enum limit_resource resource, double seconds,
+                        double fraction)
+{
+    assert_int_equal(limit.resource, resource);
+    check_near(limit.seconds.value, seconds, 1e-9);
+    check_near(limit.fraction.value, fraction, 1e-9);
+    /* The frame takes half to four times its median; the median rates are half the best. */
+    check_near(limit.fraction.low, fraction / 4, 1e-9);
+    check_near(limit.fraction.high, fraction * 2 * 2, 1e-9);
+}
+
+static void test_limit__bounds_are_counts_over_rates(void **state)
+{
+    (void)state;
+    /* 20,000 calls at 2 M/s: 10 ms. 15,000 vertices at 150 M/s: 0.1 ms. 5,000 primitives of
+     * (980,000 - 480,000) / 5,000 = 100 fragments: between 2 and 0.5 M/s. 980,000 / 500 M/s. */
+    struct limit limit = limit_with(20000, 15000, 5000, 980000, 0.04);
+    check_limit(limit, LIMIT_CALLS, 0.010, 0.25);
+    check_near(limit.fragments_per_triangle, 100, 1e-9);
+    check_near(limit.bounds[LIMIT_VERTICES], 1e-4, 1e-9);
+    check_near(limit.bounds[LIMIT_FILL], 1.96e-3, 1e-9);
+    assert_true(limit.bounds[LIMIT_TRIANGLES] > 5000 / 2e6);
+    assert_true(limit.bounds[LIMIT_TRIANGLES] < 5000 / 0.5e6);
+    check_limit(limit_with(2, 6e6, 1000, 480000, 0.05), LIMIT_VERTICES, 0.04, 0.8);
+    /* 20,000 primitives of 16 fragments at 4 M/s. */
+    check_limit(limit_with(2, 40000, 20000, 480000 + 320000, 0.01), LIMIT_TRIANGLES, 0.005, 0.5);
+    check_limit(limit_with(2, 8, 4, 5e6, 0.02), LIMIT_FILL, 0.01, 0.5);
+}
+
+static void test_limit__a_frame_that_mixes_sizes_is_held_against_culled_triangles(void **state)
+{
+    (void)state;
+    struct limit limit = limit_with(2, 40000, 20000, 480000 + 320000, 0.004);
+    assert_true(limit.mixed);
+    check_near(limit.bounds[LIMIT_TRIANGLES], 20000 / 50e6, 1e-9);
+    check_limit(limit, LIMIT_FILL, 1.6e-3, 0.4);
+    assert_false(limit_with(2, 40000, 20000, 480000 + 320000, 0.006).mixed);
+}
+
+static void test_limit__what_was_not_counted_bounds_nothing(void **state)
+{
+    (void)state;
+    struct limit limit = limit_with(20000, NAN, NAN, NAN, 0.02);
+    check_limit(limit, LIMIT_CALLS, 0.010, 0.5);
+    assert_true(isnan(limit.bounds[LIMIT_FILL]));
+    limit = limit_with(NAN, NAN, NAN, NAN, 0.02);
+    assert_int_equal(limit.resource, LIMIT_UNKNOWN);
+    assert_true(isnan(limit.fraction.value));
+    struct result result = {.cell = {.width_px = 8, .height_px = 6}};
+    limit = limit_of(NULL, &result, (struct interval){1, 1, 1});
+    assert_int_equal(limit.resource, LIMIT_UNKNOWN);
+    assert_true(isnan(limit.seconds.value));
+}
+
+static void test_limit__is_told_by_a_calibration_of_the_same_kind(void **state)
+{
+    (void)state;
+    struct calibration all[] = {round_machine(), round_machine(), round_machine(), round_machine(),
+                                round_machine()};
+    all[1].format = TARGET_RGBA16F;
+    all[2].threads = 3;
+    all[3].renderer = "square";
+    all[4].width_px = 200;
+    struct run run = {.calibrations_count = 5, .calibrations = all};
+    struct result result = {.cell = {.width_px = 1000, .height_px = 600, .format = TARGET_RGBA8},
+                            .threads = 2,
+                            .renderer = "round"};
+    assert_ptr_equal(limit_calibration(&run, &result), &all[0]);
+    result.cell.width_px = 100;
+    assert_ptr_equal(limit_calibration(&run, &result), &all[4]);
+    result.threads = 3;
+    assert_ptr_equal(limit_calibration(&run, &result), &all[2]);
+    result.threads = 4;
+    assert_null(limit_calibration(&run, &result));
+    result.threads = 2;
+    result.renderer = NULL;
+    assert_null(limit_calibration(&run, &result));
+}
+
+static void check_same(double a, double b)
+{
+    if (a != b && !(isnan(a) && isnan(b)))
+        fail_msg("%.17g became %.17g", a, b);
+}
+
+static void test_calibration__a_line_reads_back_to_the_same_values(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    struct calibration before = round_machine(), after;
+    before.measures[0].rate.value = 1e9 / 3;
+    char *line = calibration_to_json(arena, &before);
+    assert_null(strchr(line, '\n'));
+    if (calibration_from_json(arena, line, "here:1", &after, &error))
+        fail_msg("%s", error.text);
+    assert_int_equal(after.width_px, 800);
+    assert_int_equal(after.height_px, 600);
+    assert_int_equal(after.format, TARGET_RGBA8);
+    assert_int_equal(after.threads, 2);
+    assert_string_equal(after.backend, "osmesa");
+    assert_string_equal(after.renderer, "round");
+    check_same(before.core_ghz, after.core_ghz);
+    check_same(before.seconds, after.seconds);
+    for (size_t i = 0; i < CALIBRATION_COUNT; i++) {
+        const struct calibration_measure *a = &before.measures[i], *b = &after.measures[i];
+        check_same(a->rate.value, b->rate.value);
+        check_same(a->rate.low, b->rate.low);
+        check_same(a->rate.high, b->rate.high);
+        check_same(a->fragments_per_triangle, b->fragments_per_triangle);
+    }
+    arena_destroy(arena);
+}
+
+/* The line with one text in place of another is refused, and the error holds the word. */
+static void check_refused(const char *from, const char *to, const char *word)
+{
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    struct calibration machine = round_machine(), after;
+    char *line = calibration_to_json(arena, &machine), *at = strstr(line, from);
+    assert_non_null(at);
+    char *bad = arena_printf(arena, "%.*s%s%s", (int)(at - line), line, to, at + strlen(from));
+    assert_int_equal(calibration_from_json(arena, bad, "there:7", &after, &error), STATUS_INVALID);
+    if (!strstr(error.text, "there:7") || !strstr(error.text, word))
+        fail_msg("'%s' lacks there:7 or '%s'", error.text, word);
+    arena_destroy(arena);
+}
+
+static void test_calibration__a_malformed_line_names_key_and_value(void **state)
+{
+    (void)state;
+    check_refused("\"version\":2", "\"version\":3", "this treeline reads version 1 to 2");
+    check_refused(CALIBRATION_KIND, "treeline-run", CALIBRATION_KIND);
+    check_refused("\"rgba8\"", "\"rgb\"", "rgba8|rgba16f|rgba32f");
+    check_refused("\"threads\":2", "\"threads\":0", "threads");
+    check_refused("\"width_px\":800", "\"width_px\":-1", "width_px");
+    check_refused("\"rate\":250000000", "\"rate\":-5", "rate");
+    check_refused("\"fill_opaque\"", "\"fill_purple\"", "fill_purple");
+    check_refused("}}", "}", "JSON");
+}
+
+/* A run of version 1, committed before there was a calibration, is one without. */
+static void test_run__of_version_1_is_read_as_one_without_calibration(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    struct run *run;
+    const char *path = arena_printf(arena, "%s/results/baselines/quick-xeon-2cores", data_folder());
+    if (run_read(arena, path, &run, &error))
+        fail_msg("%s", error.text);
+    assert_int_equal(run->calibrations_count, 0);
+    assert_true(run->results_count > 0);
+    arena_destroy(arena);
+}
+
+static void test_run__keeps_its_calibrations_among_its_results(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    char folder[] = "/tmp/treeline-calibrate-XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    struct provenance provenance = {.cores = 2};
+    struct cell cell = {.name = "tiny/null/trees=1", .width_px = 8, .height_px = 6};
+    struct result result;
+    struct run *run;
+    result_init(&result, &cell, 0);
+    result.message = CALIBRATION_KIND; /* a word in a text makes no calibration */
+    assert_int_equal(run_open(folder, &provenance, false, &error), STATUS_OK);
+    for (int i = 0; i < 5; i++) {
+        struct calibration machine = round_machine();
+        machine.width_px = 100 + i;
+        assert_int_equal(run_append_calibration(folder, &machine, &error), STATUS_OK);
+        result.repetition = i;
+        assert_int_equal(run_append(folder, &result, &error), STATUS_OK);
+    }
+    if (run_read(arena, folder, &run, &error))
+        fail_msg("%s", error.text);
+    assert_int_equal(run->calibrations_count, 5);
+    assert_int_equal(run->results_count, 5);
+    for (int i = 0; i < 5; i++) {
+        assert_int_equal(run->calibrations[i].width_px, 100 + i);
+        assert_int_equal(run->results[i].repetition, i);
+    }
+    unlink(arena_printf(arena, "%s/cells.jsonl", folder));
+    rmdir(folder);
+    arena_destroy(arena);
+}
+
+/* One cell of 20,000 triangles of 16 fragments each in 10 ms, on the machine of round figures. */
+static void test_report__tables_and_roofline_tell_what_bounds_a_cell(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    char folder[] = "/tmp/treeline-calibrate-XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    struct provenance provenance = {.cores = 2};
+    struct calibration machine = round_machine();
+    struct cell cell = {.name = "tiny/polygons/trees=7",
+                        .scene = "tiny",
+                        .method_name = "polygons",
+                        .options = "",
+                        .trees = 7,
+                        .width_px = 800,
+                        .height_px = 600};
+    double seconds[] = {0.01, 0.01, 0.01};
+    struct result result;
+    struct run *run;
+    result_init(&result, &cell, 0);
+    result.threads = 2;
+    result.renderer = "round";
+    result.frames_count = 3;
+    result.frame_seconds = seconds;
+    result.draw_calls = 2;
+    result.vertices = 40000;
+    result.primitives = 20000;
+    result.triangles = 30000;
+    result.fragments = 480000 + 320000;
+    assert_int_equal(run_open(folder, &provenance, false, &error), STATUS_OK);
+    assert_int_equal(run_append_calibration(folder, &machine, &error), STATUS_OK);
+    assert_int_equal(run_append(folder, &result, &error), STATUS_OK);
+    if (run_read(arena, folder, &run, &error) ||
+        report_write_run(arena, run, arena_printf(arena, "%s/out", folder), &error))
+        fail_msg("%s", error.text);
+    /* 20,000 / 4 M/s of 10 ms; rates and roof by hand. */
+    static const char check[] =
+        "import csv\n"
+        "row = next(csv.DictReader(open('tables/results.csv')))\n"
+        "def near(key, value): assert abs(float(row[key]) / value - 1) < 1e-9, (key, row[key])\n"
+        "near('limit_fraction', 0.5)\n"
+        "near('trees_per_second', 700)\n"
+        "near('triangles_per_second', 3e6)\n"
+        "near('fragments_per_second', 8e7)\n"
+        "assert row['bound_by'] == 'triangles'\n"
+        "table = open('tables/results.md').read().splitlines()\n"
+        "cells = dict(zip(*([c.strip() for c in table[i].split('|')] for i in (0, 2))))\n"
+        "assert float(cells['of limit [%]']) == 50 and cells['bound by'] == 'triangles', cells\n"
+        "assert len({line.count('|') for line in table}) == 1\n"
+        "tex = [l for l in open('tables/results.tex') if l.rstrip().endswith(chr(92) * 2)]\n"
+        "assert len({line.count('&') for line in tex}) == 1 and '& triangles &' in tex[1]\n"
+        "blocks = open('plots/roofline-tiny-7.dat').read().split('\\n\\n\\n')\n"
+        "point = [float(v) for v in blocks[-1].splitlines()[1].split('#')[0].split()]\n"
+        "assert point == [16, 2, 2, 2], point\n"
+        "roof = [[float(v) for v in l.split()] for l in blocks[0].splitlines()[1:]]\n"
+        "above = min(y for x, y in roof if x <= 16)\n"
+        "below = max(y for x, y in roof if x >= 16)\n"
+        "assert below <= 4 <= above < 1.1 * below, (below, above)\n"
+        "page = open('index.html').read()\n"
+        "assert 'id=\"limit\"' in page and 'aria-label=\"tiny, 7 trees\"' in page\n";
+    assert_int_equal(
+        file_write(arena_printf(arena, "%s/out/check.py", folder), check, strlen(check), &error),
+        STATUS_OK);
+    assert_int_equal(system(arena_printf(arena, "cd %s/out && python3 check.py", folder)), 0);
+    assert_int_equal(system(arena_printf(arena, "rm -rf %s", folder)), 0);
+    arena_destroy(arena);
+}
+
+static void test_calibration__the_readme_documents_every_measure(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    char *text;
+    size_t size;
+    const char *path = arena_printf(arena, "%s/results/README.md", data_folder());
+    assert_int_equal(file_read(arena, path, 0, &text, &size, &error), STATUS_OK);
+    for (size_t i = 0; i < CALIBRATION_COUNT; i++) {
+        const struct calibration_info *info = &calibration_table[i];
+        char *row = arena_printf(arena, "| `%s` | %s/s | %s |", info->field, info->unit, info->doc);
+        if (!strstr(text, row))
+            fail_msg("%s lacks the row\n%s", path, row);
+    }
+#define LIMIT_ROW(name, word, doc)                                                                 \
+    if (*(word) && !strstr(text, "| " word " | " doc " |"))                                        \
+        fail_msg("%s lacks the row\n%s", path, "| " word " | " doc " |");
+    LIMIT_LIST(LIMIT_ROW)
+#undef LIMIT_ROW
+    arena_destroy(arena);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_limit__a_triangle_s_rate_goes_with_its_size),
+        cmocka_unit_test(test_limit__bounds_are_counts_over_rates),
+        cmocka_unit_test(test_limit__a_frame_that_mixes_sizes_is_held_against_culled_triangles),
+        cmocka_unit_test(test_limit__what_was_not_counted_bounds_nothing),
+        cmocka_unit_test(test_limit__is_told_by_a_calibration_of_the_same_kind),
+        cmocka_unit_test(test_calibration__a_line_reads_back_to_the_same_values),
+        cmocka_unit_test(test_calibration__a_malformed_line_names_key_and_value),
+        cmocka_unit_test(test_run__of_version_1_is_read_as_one_without_calibration),
+        cmocka_unit_test(test_run__keeps_its_calibrations_among_its_results),
+        cmocka_unit_test(test_report__tables_and_roofline_tell_what_bounds_a_cell),
+        cmocka_unit_test(test_calibration__the_readme_documents_every_measure),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
