@@ -55,6 +55,7 @@ check 'its test fails when it draws other cones' bash -c '
 check 'it stands in the report beside null' bash -c 'grep -q my-trees "$(./treeline run --scene tiny --method null \
   --method my-trees --trees 1 --rounds 1 --frame-seconds 0.02 --views 1 --reference-samples 16 --out "$0" --report -q | tail -1)"' \
   "$work/run"
+check 'it keeps the contract' ./treeline conform my-trees
 ./treeline render --scene tiny --method my-trees --size 64x48 -o "$work/in.png" -q
 
 # Out of the tree: the headers, the program and the rule of the installation alone.
@@ -67,6 +68,7 @@ check 'pkg-config knows the contract' test "$(pkg-config --modversion treeline)"
 check 'the same files build outside' make -s -f "$(pkg-config --variable=makefile treeline)" my-trees.so
 check 'a method without a shader builds by one line' bash -c 'cc -shared -fPIC $(pkg-config --cflags treeline) -o null.so null.c'
 check 'help explains the plugin' bash -c 'treeline help ./my-trees.so | grep -q sides'
+check 'the plugin keeps the contract' treeline conform --check '^(load|description|bytes|one-tree|effects)$' ./my-trees.so
 check 'render takes the plugin' treeline render --scene tiny --method ./my-trees.so --size 64x48 -o "$work/out.png" -q
 check 'and draws what it draws within' cmp "$work/in.png" "$work/out.png"
 check 'run takes the plugin' treeline run --scene tiny --method ./my-trees.so:sides=3,9 --trees 1 --rounds 1 \

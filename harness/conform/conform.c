@@ -133,6 +133,8 @@ static enum status check_child(struct arena *arena, const struct order *order,
     if (outcome.interrupted)
         return error_set(error, STATUS_INTERRUPTED, "stopped before its end");
     row_judge(arena, order->request, &outcome, row);
+    if (row->result == CONFORM_FAILED && row->status == STATUS_UNAVAILABLE)
+        return error_set(error, STATUS_UNAVAILABLE, "%s", row->message);
     return STATUS_OK;
 }
 

@@ -32,8 +32,8 @@ struct conform_request {
 /* Runs the checks of one method and tells each row as it is known. *status: STATUS_OK; what a
  * method that cannot be loaded is refused with (then no other check is run); else
  * STATUS_NONCONFORMING. Returns an error only for what is not the method's fault:
- * STATUS_INTERRUPTED, a wrong pattern, no process. This process loads no plugin and touches no
- * GL. */
+ * STATUS_INTERRUPTED, STATUS_UNAVAILABLE without OpenGL, a wrong pattern, no process. This process
+ * loads no plugin and touches no GL. */
 enum status conform_run(struct arena *arena, const struct conform_request *request,
                         enum status *status, struct error *error);
 
