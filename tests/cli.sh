@@ -51,6 +51,13 @@ refuses 'an eye that is not finite' 64 "--eye: 'nan,0,0'" render --scene tiny --
 refuses 'a time beyond the path' 64 "--time: '2'" render --scene tiny --method null --time 2
 refuses 'a picture of an unknown kind' 65 'gif' render --scene tiny --method null -o "$work/a.gif"
 refuses 'a picture in no folder' 74 'no/a.png' render --scene tiny --method null -o "$work/no/a.png"
+refuses 'several methods for one picture' 64 'several methods need --sheet' render --scene tiny --method null --method billboards
+refuses 'a sheet of frames' 64 '--sheet and --frames' render --scene tiny --method null --sheet --frames "$work/f"
+refuses 'a distance that is none' 64 "--distances: 'x' is not a number in 0.01..1e.06" render --scene tiny --method null --sheet --distances 9,x
+refuses 'distances without a sheet' 64 '--distances needs --sheet' render --scene tiny --method null --distances 9
+refuses 'a sheet without a direction' 64 'the eye is 0 m from the target' render --scene tiny --method null --sheet --eye 1,1,1 --target 1,1,1
+refuses 'frames of one view' 64 'takes no --output' render --scene tiny --method null --frames "$work/f" -o "$work/a.png"
+refuses 'a sheet beyond the largest picture' 64 'take a smaller --size' render --scene tiny --method null --sheet --size 5000x5000
 refuses 'a picture above the largest frame' 65 '67108864 pixels; at most 33554432' render --scene tiny --method null --size 8192x8192
 refuses 'an option that stands twice' 65 "'views' stands twice" run --scene tiny --method billboards:views=8,views=16 --dry-run
 refuses 'a folder without a name' 64 "'' is not the name of a folder" run "${good[@]}" --out ''
@@ -242,6 +249,24 @@ try render --scene tiny --method null --size 40x30 -o "$work/a.exr" -q
 is 'render writes an EXR' $rc -eq 0 -a -s "$work/a.exr"
 try render --scene tiny --method null --size 40x30 -o "$work/b.exr" -q
 is 'the same cell is the same file' $rc -eq 0 -a "$(cmp "$work/a.exr" "$work/b.exr" && echo same)" = same
+# A tile of the sheet is the picture that render and reference give alone; a frame is the path's view.
+camera=(--scene tiny --trees 3 --size 64x48 --eye 0,5,40 --target 0,5,0)
+tile() { oiiotool "$work/sheet.png" --cut "64x48+$1+$2" -o "$work/tile.png" && idiff -q -fail 0 "$work/tile.png" "$3"; }
+try render "${camera[@]}" --method null --method billboards --sheet --distances 80,40 -o "$work/sheet.png" -q
+is 'a sheet is written' $rc -eq 0 -a -s "$work/sheet.png" -a ! -s "$work/out"
+try render "${camera[@]}" --method billboards -o "$work/one.png" -q
+is 'its tiles are the pictures of render' "$(tile $((14 + 64 + 10)) $((34 + 24 + 2 * (48 + 44))) "$work/one.png" && echo same)" = same
+try reference "${camera[@]}" --standard-error 0.006 --samples 1024 -o "$work/one.png" -q
+is 'and those of reference' "$(tile $((14 + 64 + 10)) $((34 + 24)) "$work/one.png" && echo same)" = same
+try render --scene walk-in --trees 3 --method billboards --size 41x30 --frames "$work/frames" --frames-count 4
+is 'the frames of a path are written' $rc -eq 0 -a "$(ls "$work"/frames/frame-0000[1-4].png | wc -l)" -eq 4
+try render --scene walk-in --trees 3 --method billboards --size 41x30 --time 1 -o "$work/one.png" -q
+is 'the last frame is the end of the path' "$(idiff -q -fail 0 "$work/one.png" "$work/frames/frame-00004.png" && echo same)" = same
+if command -v ffmpeg >/dev/null; then
+  is 'and a video' "$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 "$work/frames/path.mp4")" = 4
+fi
+PATH=/nowhere try render --scene tiny --method null --size 40x30 --frames "$work/silent" --frames-count 2
+is 'without ffmpeg there is no video, which is said' $rc -eq 0 -a -s "$work/silent/frame-00002.png" -a "$(grep -c 'no video: ffmpeg: not found' "$work/err")" -eq 1
 try render tiny/null/size=40x30 --eye 0,2,30 --target 0,5,0 -o "$work/c.png"
 is 'render takes a cell and a camera, and says what it wrote on stderr' $rc -eq 0 -a -s "$work/c.png" -a ! -s "$work/out" -a -s "$work/err"
 try reference --scene tiny --size 40x30 --effects none --samples 16 --standard-error 0 -o "$work/r.exr" -q

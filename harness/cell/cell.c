@@ -168,33 +168,72 @@ enum status cell_run(struct arena *arena, const struct plan *plan, const struct 
     return result->status;
 }
 
+/* A stage outside a run: nothing of its result is kept. */
+static struct stage stage_for_pictures(struct arena *arena, const struct plan *plan,
+                                       const struct cell *cell, struct result *result,
+                                       struct error *error)
+{
+    result_init(result, cell, 0);
+    return (struct stage){.plan = plan,
+                          .cell = cell,
+                          .result_arena = arena,
+                          .result = result,
+                          .error = error,
+                          .announce = -1};
+}
+
+/* One picture of a prepared cell, checked. */
+static enum status picture_of(struct stage *stage, const struct view *view, struct arena *arena,
+                              struct frame **frame)
+{
+    enum status status = stage_draw(stage, view, NULL);
+    if (!status)
+        status = stage_check(stage, "draw");
+    if (status)
+        return status;
+    *frame = stage_read(stage, arena);
+    return frame_check(*frame, stage->error);
+}
+
 enum status cell_render(struct arena *arena, const struct cell *cell, double time,
                         const struct view *view, const char *backend, struct frame **frame,
                         struct error *error)
 {
     struct plan plan = {.backend = backend};
     struct result result;
-    result_init(&result, cell, 0);
-    struct stage stage = {.plan = &plan,
-                          .cell = cell,
-                          .result_arena = arena,
-                          .result = &result,
-                          .error = error,
-                          .announce = -1};
+    struct stage stage = stage_for_pictures(arena, &plan, cell, &result, error);
     struct view along;
     enum status status = stage_open(&stage);
     if (!status)
         status = stage_prepare(&stage);
     if (!status) {
         view_at(stage.scene, time, &along);
-        status = stage_draw(&stage, view ? view : &along, NULL);
-    }
-    if (!status)
-        status = stage_check(&stage, "draw");
-    if (!status) {
-        *frame = stage_read(&stage, arena);
-        status = frame_check(*frame, error);
+        status = picture_of(&stage, view ? view : &along, arena, frame);
     }
     stage_close(&stage);
+    return status;
+}
+
+enum status cell_render_views(const struct cell *cell, const struct view *views, size_t count,
+                              const char *backend, const struct cell_taker *taker,
+                              struct error *error)
+{
+    struct arena *arena = arena_create(0);
+    struct plan plan = {.backend = backend};
+    struct result result;
+    struct stage stage = stage_for_pictures(arena, &plan, cell, &result, error);
+    enum status status = stage_open(&stage);
+    if (!status)
+        status = stage_prepare(&stage);
+    for (size_t i = 0; i < count && !status; i++) {
+        struct arena *scratch = arena_create(0);
+        struct frame *frame;
+        status = picture_of(&stage, &views[i], scratch, &frame);
+        if (!status)
+            status = taker->take(taker->context, i, frame, error);
+        arena_destroy(scratch);
+    }
+    stage_close(&stage);
+    arena_destroy(arena);
     return status;
 }

@@ -18,6 +18,17 @@ enum status cell_render(struct arena *arena, const struct cell *cell, double tim
                         const struct view *view, const char *backend, struct frame **frame,
                         struct error *error);
 
+/* Several views of a cell, prepared once. Each picture goes to take, whose frame ends with the
+ * call; a status other than ok from it ends the drawing. */
+struct cell_taker {
+    enum status (*take)(void *context, size_t index, const struct frame *frame,
+                        struct error *error);
+    void *context;
+};
+enum status cell_render_views(const struct cell *cell, const struct view *views, size_t count,
+                              const char *backend, const struct cell_taker *taker,
+                              struct error *error);
+
 /* Before the first timed round: every reference that the plan's cells are compared with, once,
  * through the disk cache, each scene in a child process (Embree starts threads), kept as
  * FOLDER/references/KEY.frame (16 hex digits of reference_key). One that fails is told on stderr

@@ -75,8 +75,9 @@ static void put_base64(FILE *out, const uint8_t *bytes, size_t size)
     }
 }
 
-/* Signed values as colours: missing is blue, too much is orange, none is black. Both ends are told
- * apart by every reader. Already sRGB-encoded. */
+/* Signed values as colours: missing is blue, too much is orange, none is black; by the root of the
+ * value, so that thin edges are seen. Both ends are told apart by every reader. Already
+ * sRGB-encoded. */
 static struct image *signed_to_image(struct arena *arena, const struct image *map)
 {
     static const float ends[2][3] = {{0.34f, 0.71f, 0.98f}, {1.0f, 0.63f, 0.22f}};
@@ -85,7 +86,7 @@ static struct image *signed_to_image(struct arena *arena, const struct image *ma
     for (size_t i = 0; i < pixels; i++)
         for (size_t c = 0; c < 3; c++)
             image->values[3 * i + c] =
-                fminf(fabsf(map->values[i]), 1) * ends[map->values[i] > 0][c];
+                sqrtf(fminf(fabsf(map->values[i]), 1)) * ends[map->values[i] > 0][c];
     return image;
 }
 

@@ -11,13 +11,16 @@ const viewsWithPictures = (row) => row.views.map((_, view) => view).filter((view
 const borrow = (image) => image && make("img", { src: image.src, alt: image.alt, width: image.getAttribute("width"), height: image.getAttribute("height") });
 const fullSize = (image) => image && make("a", { href: image.parentElement.getAttribute("href") }, borrow(image));
 
+const megabytes = (bytes) => (bytes === null ? none : `${plain(bytes / 1e6)} MB`);
 const figures = (row) => [
-  ["time a frame", `${seconds(valueOf(row, "frame_seconds"))} (${seconds(valueOf(row, "frame_seconds_low"))} to ${seconds(valueOf(row, "frame_seconds_high"))})`],
+  ["time a frame", `${seconds(valueOf(row, "frame_seconds"))}`],
+  ["95 % interval", `${seconds(valueOf(row, "frame_seconds_low"))} to ${seconds(valueOf(row, "frame_seconds_high"))}`],
   ["frames a second", plain(valueOf(row, "fps"))],
   [`${metric().heading}, same effects`, plain(errorOf(row, "same"))],
   [`${metric().heading}, all effects`, plain(errorOf(row, "full"))],
   ...(row.bound ? [["of the machine's limit", `${plain(100 * valueOf(row, "limit_fraction"))} % of ${row.bound}`]] : []),
-  ["memory, GL", `${plain(valueOf(row, "host_bytes") === null ? null : valueOf(row, "host_bytes") / 1e6)}, ${plain(valueOf(row, "device_bytes") === null ? null : valueOf(row, "device_bytes") / 1e6)} MB`],
+  ["method's memory", megabytes(valueOf(row, "host_bytes"))],
+  ["GL objects", megabytes(valueOf(row, "device_bytes"))],
 ];
 const pairs = (list) => list.map(([name, text]) => [make("dt", null, name), make("dd", null, text)]);
 
