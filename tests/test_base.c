@@ -104,6 +104,24 @@ static int exit_code_of_alloc(size_t budget, size_t count, size_t size)
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/* The address sanitizer's, where there is one. */
+int __asan_address_is_poisoned(const volatile void *address) __attribute__((weak));
+
+static void test_arena__what_was_not_asked_for_is_fenced_under_the_sanitizer(void **unused)
+{
+    (void)unused;
+    bool fenced = __asan_address_is_poisoned != NULL;
+    static const size_t sizes[] = {0, 1, 63, 64, 65, 4096, 1 << 18, (1 << 18) + 1, 3 << 20};
+    struct arena *arena = arena_create(0);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        char *memory = arena_alloc(arena, sizes[i], 1);
+        memset(memory, 1, sizes[i]);
+        if (fenced && !__asan_address_is_poisoned(memory + sizes[i]))
+            fail_msg("the byte behind %zu may be touched", sizes[i]);
+    }
+    arena_destroy(arena);
+}
+
 static void test_arena__over_budget_and_overflow_end_the_process_as_memory(void **unused)
 {
     (void)unused;
@@ -420,6 +438,7 @@ int main(void)
         cmocka_unit_test(test_error__context_stands_before_the_text_and_newlines_go),
         cmocka_unit_test(test_error__an_over_long_text_ends_in_dots),
         cmocka_unit_test(test_arena__memory_is_zero_aligned_apart_and_counted),
+        cmocka_unit_test(test_arena__what_was_not_asked_for_is_fenced_under_the_sanitizer),
         cmocka_unit_test(test_arena__over_budget_and_overflow_end_the_process_as_memory),
         cmocka_unit_test(test_option__defaults_come_from_the_table_and_print_as_nothing),
         cmocka_unit_test(test_option__text_goes_in_and_the_canonical_text_comes_out),

@@ -11,6 +11,11 @@
 
 enum { ALIGNMENT = 64, BLOCK_BYTES = 1 << 20 };
 
+/* The address sanitizer's, where the program is built with it, else NULL: memory that was not
+ * handed out may not be touched. */
+void __asan_poison_memory_region(const volatile void *memory, size_t size) __attribute__((weak));
+void __asan_unpoison_memory_region(const volatile void *memory, size_t size) __attribute__((weak));
+
 /* Header at the start of each mapping; the payload follows, aligned. */
 struct block {
     struct block *next;
@@ -23,6 +28,18 @@ struct arena {
     size_t free_bytes; /* left in it */
     size_t budget_bytes, used_bytes;
 };
+
+static void poison(const void *memory, size_t bytes)
+{
+    if (__asan_poison_memory_region)
+        __asan_poison_memory_region(memory, bytes);
+}
+
+static void unpoison(const void *memory, size_t bytes)
+{
+    if (__asan_unpoison_memory_region)
+        __asan_unpoison_memory_region(memory, bytes);
+}
 
 static _Noreturn void over_budget(const struct arena *arena, size_t count, size_t size)
 {
@@ -52,6 +69,7 @@ void arena_destroy(struct arena *arena)
         return;
     for (struct block *block = arena->blocks; block;) {
         struct block *next = block->next;
+        unpoison(block, block->mapped_bytes);
         munmap(block, block->mapped_bytes);
         block = next;
     }
@@ -69,6 +87,7 @@ static struct block *block_map(struct arena *arena, size_t payload_bytes)
     block->mapped_bytes = bytes;
     block->next = arena->blocks;
     arena->blocks = block;
+    poison((char *)block + ALIGNMENT, payload_bytes);
     return block;
 }
 
@@ -77,6 +96,7 @@ void *arena_alloc(struct arena *arena, size_t count, size_t size)
     size_t bytes;
     if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 4)
         over_budget(arena, count, size);
+    size_t wanted = bytes;
     bytes = (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
     if (bytes == 0)
         bytes = ALIGNMENT;
@@ -84,8 +104,12 @@ void *arena_alloc(struct arena *arena, size_t count, size_t size)
         (bytes > arena->budget_bytes || arena->used_bytes > arena->budget_bytes - bytes))
         over_budget(arena, count, size);
     arena->used_bytes += bytes;
-    if (bytes > BLOCK_BYTES / 4)
-        return (char *)block_map(arena, bytes) + ALIGNMENT;
+    bytes += __asan_poison_memory_region ? ALIGNMENT : 0; /* stays poisoned, as a fence */
+    if (bytes > BLOCK_BYTES / 4) {
+        char *alone = (char *)block_map(arena, bytes) + ALIGNMENT;
+        unpoison(alone, wanted);
+        return alone;
+    }
     if (bytes > arena->free_bytes) {
         arena->free = (char *)block_map(arena, BLOCK_BYTES) + ALIGNMENT;
         arena->free_bytes = BLOCK_BYTES;
@@ -93,6 +117,7 @@ void *arena_alloc(struct arena *arena, size_t count, size_t size)
     void *memory = arena->free;
     arena->free += bytes;
     arena->free_bytes -= bytes;
+    unpoison(memory, wanted);
     return memory;
 }
 
