@@ -82,6 +82,7 @@ static void test_conform__a_plugin_that_keeps_the_contract_passes(void **unused)
     (void)unused;
     struct arena *arena = arena_create(0);
     all_pass(plugin(arena, "honest"));
+    all_pass(plugin(arena, "honest-cpu"));
     arena_destroy(arena);
 }
 
@@ -97,6 +98,8 @@ static void test_conform__each_way_to_misbehave_is_told_apart(void **unused)
          "claims sun-shadows, which changes nothing"},
         {"lies-fog", "effects", STATUS_NONCONFORMING, STATUS_NONCONFORMING,
          "does not claim fog, but draws it"},
+        {"lies-treeless", "one-tree", STATUS_NONCONFORMING, STATUS_NONCONFORMING,
+         "says that it draws no trees, but coverage is"},
         {"lies-host", "memory", STATUS_NONCONFORMING, STATUS_NONCONFORMING, "the process grew by"},
         {"lies-device", "memory", STATUS_NONCONFORMING, STATUS_NONCONFORMING, "OpenGL holds 8"},
         {"grows", "growth", STATUS_NONCONFORMING, STATUS_NONCONFORMING, "410 kB of host"},

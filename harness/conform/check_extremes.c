@@ -22,26 +22,34 @@ static enum status shoot(struct subject *subject, const struct shot *shot)
     struct frame *frame;
     enum status status;
     subject_say(subject, "%s", shot->name);
-    if (subject_is_treeless(subject))
-        request.world.trees = 0;
-    subject->skipped = false;
     if ((status = trial_open(subject, &request, &trial)))
         return status;
     world_view(trial.scene, &trial.world, shot->eye_m, shot->target_m, &view);
     status = trial_draw(&trial, &view, &frame);
-    if (!status && request.world.trees && shot->covers)
+    if (!status && shot->covers)
         status = trial_covers(&trial, frame, &view);
-    if (!status && request.world.trees && shot->bounded)
+    if (!status && shot->bounded)
         status = trial_bounded(&trial, frame, &view);
     trial_close(&trial);
     return status;
 }
 
+static enum status shoot_all(struct subject *subject, const struct shot *shots, size_t count)
+{
+    enum status status = STATUS_OK;
+    if (subject_is_treeless(subject))
+        return STATUS_OK;
+    for (size_t i = 0; i < count && !status; i++)
+        if ((status = shoot(subject, &shots[i])))
+            error_context(subject->error, "%s", shots[i].name);
+    return status;
+}
+
 static enum status check_million(struct subject *subject)
 {
-    return shoot(
-        subject,
-        &(struct shot){"a million trees", 1000000, {0, 400, 7000}, {0, 0, 5000}, true, false});
+    static const struct shot shot = {"a million trees", 1000000, {0, 400, 7000},
+                                     {0, 0, 5000},      true,    false};
+    return shoot_all(subject, &shot, 1);
 }
 
 static enum status check_pixel(struct subject *subject)
@@ -53,11 +61,7 @@ static enum status check_pixel(struct subject *subject)
         {"a forest of trees of a pixel", 2500, {0, 500, 1300}, {0, 10, 0}, true, false},
         {"a forest of trees below a pixel", 2500, {0, 1500, 4000}, {0, 10, 0}, true, false},
     };
-    enum status status = STATUS_OK;
-    for (size_t i = 0; i < sizeof shots / sizeof *shots && !status; i++)
-        if ((status = shoot(subject, &shots[i])))
-            error_context(subject->error, "%s", shots[i].name);
-    return status;
+    return shoot_all(subject, shots, sizeof shots / sizeof *shots);
 }
 
 static enum status check_close(struct subject *subject)
@@ -69,11 +73,7 @@ static enum status check_close(struct subject *subject)
         {"the camera at a tree's foot", 1, {0, 0, 0}, {0, 1, 0.5}, false, false},
         {"straight up, below a tree", 1, {2, 1, 0}, {2, 9, 0}, true, false},
     };
-    enum status status = STATUS_OK;
-    for (size_t i = 0; i < sizeof shots / sizeof *shots && !status; i++)
-        if ((status = shoot(subject, &shots[i])))
-            error_context(subject->error, "%s", shots[i].name);
-    return status;
+    return shoot_all(subject, shots, sizeof shots / sizeof *shots);
 }
 
 /* Straight down is the limit of tilting: a thousandth of a radian beside it the picture is the
