@@ -165,6 +165,6 @@ class Browser:
         with open(path, "wb") as file:
             file.write(base64.b64decode(self.call("Page.captureScreenshot", format="png", **more)["data"]))
 
-    def paper(self, path):
-        with open(path, "wb") as file:
-            file.write(base64.b64decode(self.call("Page.printToPDF", printBackground=True)["data"]))
+    def paper(self):
+        """The page as a PDF."""
+        return base64.b64decode(self.call("Page.printToPDF", printBackground=True)["data"])

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""The report's page in a real browser, by clicking: page_live.py CHROMIUM OUT MANY_OUT.
+"""The report's page in a real browser, by clicking: page_live.py CHROMIUM OUT MANY_OUT [LOOK].
 
 OUT holds the report of the synthetic run, MANY_OUT one of ten thousand cells. What the page shows is compared with
-OUT/tables/results.csv. Whatever the browser complains about is a failure."""
+OUT/tables/results.csv. Whatever the browser complains about is a failure. LOOK: a folder for
+pictures of what was seen, to look at."""
 import csv
 import math
 import os
@@ -15,6 +16,11 @@ from page_browser import Browser
 
 program, out, many = sys.argv[1:4]
 results = []
+
+
+def look(browser, name):
+    if len(sys.argv) > 4:
+        browser.picture(os.path.join(sys.argv[4], name + ".png"), whole=True)
 
 
 def check(name, good, detail=""):
@@ -255,6 +261,9 @@ def check_paper(browser):
     shown = lambda what: browser.run(f"Array.from(document.querySelectorAll('{what}')).filter((node) => node.getClientRects().length).length")
     check("on paper the static plots stand in for the live ones", shown("svg.plot") >= 6 and shown("svg.chart") == 0, [shown("svg.plot"), shown("svg.chart")])
     check("paper is light", browser.run("getComputedStyle(document.documentElement).colorScheme") == "light")
+    paper = browser.paper()
+    sizes = {tuple(map(float, box.split())) for box in re.findall(r"/MediaBox *\[ *([\d. ]+)\]", paper.decode("latin-1"))}
+    check("wide tables get sheets across", {width > height for _, _, width, height in sizes} == {True, False}, sizes)
     browser.media("light")
 
 
@@ -264,6 +273,7 @@ def check_small(browser, page):
         browser.media(scheme)
         browser.open(page)
         browser.settle()
+        look(browser, f"narrow-{scheme}")
         fits(browser, f"360 px, {scheme}")
         browser.run("for (const section of document.querySelectorAll('details')) section.open = true")
         browser.settle()
@@ -334,6 +344,7 @@ def main():
         browser.open(page)
         browser.settle()
         check("the script ran to its end", browser.run("document.documentElement.classList.contains('js')"))
+        look(browser, "wide")
         fits(browser, "1280 px")
         check_trade(browser, rows)
         check_hover(browser, rows)

@@ -359,6 +359,8 @@ static void test_report__numbers_are_rounded_and_never_nan(void **state)
         assert_string_equal(number_exact(cases[i].value).text, cases[i].exact);
         assert_string_equal(number_short(cases[i].value, 3).text, cases[i].brief);
     }
+    assert_string_equal(number_plain(1e5, 15).text, "100,000"); /* trees are counted exactly */
+    assert_string_equal(number_plain(1234567, 15).text, "1,234,567");
     assert_string_equal(number_seconds(0.0123).text, "12.3 ms");
     assert_string_equal(number_seconds(4.5).text, "4.50 s");
     assert_string_equal(number_seconds(NAN).text, "\u2013");

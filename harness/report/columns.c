@@ -78,7 +78,7 @@ struct number number_plain(double value, int digits)
     snprintf(rounded, sizeof rounded, "%.*e", digits - 1, value);
     int decimals = digits - 1 - atoi(strchr(rounded, 'e') + 1);
     decimals = value == 0 || decimals < 0 ? 0 : decimals;
-    if (value == floor(value) && magnitude < 1e5 && magnitude >= 1)
+    if (value == floor(value) && magnitude >= 1)
         decimals = 0; /* counts have no decimals */
     snprintf(number.text, sizeof number.text, "%.*f", decimals, value);
     separate_thousands(&number);

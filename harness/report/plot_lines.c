@@ -69,8 +69,8 @@ enum status plot_growth(const struct book *book, size_t family, const char *fold
         if (book->groups[row->group].family != family)
             continue;
         slug = slug ? slug : book->groups[row->group].slug;
-        axis_add(&x, (double)row->trees);
-        if (row->trees > 0) {
+        if (row->trees > 0 && row->values[COLUMN_frame_seconds] > 0) {
+            axis_add(&x, (double)row->trees);
             axis_add(&y, 1 / row->values[COLUMN_frame_seconds_low]);
             axis_add(&y, 1 / row->values[COLUMN_frame_seconds_high]);
         }

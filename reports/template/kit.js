@@ -39,7 +39,7 @@ const plain = (value, digits = 3) => {
   if (value !== 0 && (Math.abs(value) < 1e-5 || Math.abs(value) >= 1e13)) return value.toExponential(digits - 1);
   const power = value === 0 ? 0 : Number(value.toExponential(digits - 1).split("e")[1]);
   let decimals = value === 0 ? 0 : Math.max(0, digits - 1 - power);
-  if (Number.isInteger(value) && Math.abs(value) < 1e5) decimals = 0;
+  if (Number.isInteger(value)) decimals = 0;
   return value.toFixed(decimals).replace(/^-?\d+/, (whole) => whole.replace(/\B(?=(\d{3})+$)/g, ","));
 };
 const short = (value, digits = 3) => {
