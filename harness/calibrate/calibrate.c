@@ -137,7 +137,7 @@ enum status calibrate_run(struct arena *arena, const struct calibrate_request *r
         turns_take(works, held.seconds, calibration);
     if (!status)
         status = gl_check(gl_bench_gl(gl), "calibration", error);
-    else if (!ray_status && status == STATUS_UNAVAILABLE)
+    else if (!ray_status && status == STATUS_UNAVAILABLE && !request->backend)
         status = STATUS_OK; /* rays and memory alone */
     gl_bench_destroy(gl);
     ray_bench_destroy(rays);

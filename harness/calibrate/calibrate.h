@@ -89,8 +89,9 @@ struct calibrate_request {
 struct calibrate_request calibrate_held(const struct calibrate_request *request);
 
 /* Measures in this process, every kind of work in turn, again and again, so that a slow moment of
- * the machine meets all kinds alike. Without OpenGL or without Embree its rates are NaN;
- * STATUS_UNAVAILABLE when there is neither. Texts are in the arena. */
+ * the machine meets all kinds alike. Without OpenGL or without Embree its rates are NaN, and
+ * error tells why OpenGL's are; STATUS_UNAVAILABLE when there is neither, or not the back end that
+ * was asked for by name. Texts are in the arena. */
 enum status calibrate_run(struct arena *arena, const struct calibrate_request *request,
                           struct calibration *calibration, struct error *error);
 

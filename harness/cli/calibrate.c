@@ -114,6 +114,8 @@ int verb_calibrate(int argc, char **argv)
     struct calibration calibration;
     struct error error = {0};
     enum status status = calibrate_run(arena, &request.calibrate, &calibration, &error);
+    if (!status && error.status)
+        fprintf(stderr, "treeline: %s; its rates are not measured\n", error.text);
     if (!status && request.json)
         printf("%s\n", calibration_to_json(arena, &calibration));
     else if (!status)

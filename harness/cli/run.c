@@ -160,6 +160,8 @@ static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct 
                 rounds->folder, (double)rounds->count * repetition_guess_seconds(plan));
     if (!rounds->count)
         return STATUS_OK;
+    if (!rounds->request->no_calibrate && !rounds->request->quiet)
+        fprintf(stderr, "treeline: measuring what this machine can do at most\n");
     if (!rounds->request->no_calibrate)
         status = cell_calibrate(arena, plan, rounds->folder, calibration_seconds(rounds), error);
     if (!status)
