@@ -93,7 +93,7 @@ enum status plot_roofline(const struct book *book, const struct group *group, co
         axis_add(&y, million_a_second(row, COLUMN_frame_seconds_high));
         axis_add(&y, 1e-6 * limit_triangle_rate(calibration, size).high);
     }
-    if (!(y.low < y.high))
+    if (!calibration || !(y.low < y.high))
         return STATUS_OK;
     axis_widen(&x, 0.1, 0.1);
     axis_widen(&y, 0.08, 0.08);
