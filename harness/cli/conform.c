@@ -93,7 +93,7 @@ static void totals_tell(struct listener *listener, const char *const keys[])
 }
 
 /* Every method in turn; the exit code is the first failure's. */
-static int conform(struct arena *arena, struct request *request)
+static int conform(struct arena *arena, const struct request *request)
 {
     static const char *const keys[] = {"passed", "skipped", "refused", "failed"};
     struct error error = {0};
@@ -106,11 +106,12 @@ static int conform(struct arena *arena, struct request *request)
     } else {
         printf("%-20s %-12s %-8s %6s  %s\n", "method", "check", "result", "s", "message");
     }
-    request->conform.heard = heard;
-    request->conform.listener = &listener;
+    struct conform_request one_method = request->conform;
+    one_method.heard = heard;
+    one_method.listener = &listener;
     for (size_t i = 0; i < request->methods_count && !status; i++) {
-        request->conform.method = request->methods[i];
-        status = conform_run(arena, &request->conform, &one, &error);
+        one_method.method = request->methods[i];
+        status = conform_run(arena, &one_method, &one, &error);
         result = result ? result : one;
     }
     if (status)

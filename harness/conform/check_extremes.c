@@ -256,10 +256,29 @@ static void boxes_read(struct trial *trial, struct frame *small)
     }
 }
 
-/* 8 bits a channel: 0.5 GB with the depth. Compared with the reference of one pixel a box. */
-static enum status check_huge(struct subject *subject)
+/* Means over boxes against the reference of one pixel a box. */
+static enum status boxes_judge(struct trial *trial, const struct frame *small,
+                               const struct view *view)
 {
     static const double LIMIT = 0.03;
+    struct frame *reference;
+    enum status status = trial_reference(trial, view, trial->workspace.effects, &reference);
+    if (status)
+        return status;
+    for (size_t i = 0; i < (size_t)4 * SMALL_PX * SMALL_PX; i++)
+        reference->rgba[i] = fminf(reference->rgba[i], 1);
+    double bare = bare_difference(small, reference);
+    if (bare > LIMIT)
+        return subject_fail(trial->subject, "terrain and sky differ by %.3g from the reference",
+                            bare);
+    if (trial->method->traits & TRAIT_NO_TREES)
+        return STATUS_OK;
+    return trial_covers(trial, small, view);
+}
+
+/* 8 bits a channel: 0.5 GB with the depth. */
+static enum status check_huge(struct subject *subject)
+{
     struct trial_request request = {
         .world = {.trees = 3, .width_px = HUGE_PX, .height_px = HUGE_PX}, .lod = LOD_AUTO};
     struct trial trial;
@@ -269,21 +288,14 @@ static enum status check_huge(struct subject *subject)
         return status;
     world_view_near(trial.scene, &trial.world, &view);
     status = trial_draw_only(&trial, &view);
-    struct frame *small = frame_create(trial.arena, SMALL_PX, SMALL_PX, false), *reference;
     if (!status) {
+        struct frame *small = frame_create(subject->arena, SMALL_PX, SMALL_PX, false);
         boxes_read(&trial, small);
         view.width_px = view.height_px = SMALL_PX;
         status = frame_check(small, subject->error);
+        if (!status)
+            status = boxes_judge(&trial, small, &view);
     }
-    if (!status)
-        status = trial_reference(&trial, &view, trial.workspace.effects, &reference);
-    for (size_t i = 0; i < (size_t)4 * SMALL_PX * SMALL_PX && !status; i++)
-        reference->rgba[i] = fminf(reference->rgba[i], 1);
-    if (!status && !(subject->method->traits & TRAIT_NO_TREES))
-        status = trial_covers(&trial, small, &view);
-    double bare = status ? 0 : bare_difference(small, reference);
-    if (bare > LIMIT)
-        status = subject_fail(subject, "terrain and sky differ by %.3g from the reference", bare);
     trial_close(&trial);
     return status;
 }

@@ -60,9 +60,8 @@ static enum status load_try(const char *path, const char *real, struct error *er
         return error_set(error, STATUS_CRASH, "plugin %s: dies of signal %d (%s) when it is loaded",
                          path, WTERMSIG(state), strsignal(WTERMSIG(state)));
     if (WEXITSTATUS(state) != LOADED)
-        return error_set(error, STATUS_CRASH,
-                         "plugin %s: leaves by exit code %d when it is loaded", path,
-                         WEXITSTATUS(state));
+        return error_set(error, STATUS_CRASH, "plugin %s: leaves by exit code %d when it is loaded",
+                         path, WEXITSTATUS(state));
     return STATUS_OK;
 }
 
