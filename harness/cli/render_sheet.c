@@ -125,6 +125,12 @@ static enum status place_views(struct sheet *sheet, struct error *error)
     return STATUS_OK;
 }
 
+static const char *distance_text(const struct sheet *sheet, size_t column)
+{
+    double distance_m = sheet->distances_m[column];
+    return arena_printf(sheet->arena, distance_m < 1000 ? "%.3g m" : "%.0f m", distance_m);
+}
+
 static enum status draw_references(struct sheet *sheet, struct error *error)
 {
     struct reference_options options = {.effects = sheet->scene->effects,
@@ -141,7 +147,7 @@ static enum status draw_references(struct sheet *sheet, struct error *error)
         if (status)
             break;
         paste(sheet, 0, i, sheet->references[i]);
-        put_caption(sheet, 0, i, arena_printf(sheet->arena, "%.3g m", sheet->distances_m[i]));
+        put_caption(sheet, 0, i, distance_text(sheet, i));
     }
     return status;
 }
@@ -158,7 +164,7 @@ static enum status take(void *context, size_t index, const struct frame *frame, 
         return status;
     paste(sheet, sheet->row, index, frame);
     put_caption(sheet, sheet->row, index,
-                arena_printf(sheet->arena, "%.3g m, FLIP %.3f", sheet->distances_m[index],
+                arena_printf(sheet->arena, "%s, FLIP %.3f", distance_text(sheet, index),
                              comparison.value.flip));
     return STATUS_OK;
 }
