@@ -68,6 +68,7 @@ check 'pkg-config knows the contract' test "$(pkg-config --modversion treeline)"
 check 'the same files build outside' make -s -f "$(pkg-config --variable=makefile treeline)" my-trees.so
 check 'a method without a shader builds by one line' bash -c 'cc -shared -fPIC $(pkg-config --cflags treeline) -o null.so null.c'
 check 'help explains the plugin' bash -c 'treeline help ./my-trees.so | grep -q sides'
+check 'list lists the plugin' bash -c 'treeline list methods --plugin ./my-trees.so | grep -q "^my-trees "'
 check 'the plugin keeps the contract' treeline conform --check '^(load|description|bytes|one-tree|effects)$' ./my-trees.so
 check 'render takes the plugin' treeline render --scene tiny --method ./my-trees.so --size 64x48 -o "$work/out.png" -q
 check 'and draws what it draws within' cmp "$work/in.png" "$work/out.png"

@@ -8,9 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { KEY_PLUGIN = 0x100, PLUGINS_MAX = 64 };
+
 struct request {
     const char *what;
     bool json;
+    const char *plugins[PLUGINS_MAX];
+    size_t plugins_count;
 };
 
 static error_t parse(int key, char *text, struct argp_state *state)
@@ -19,6 +23,12 @@ static error_t parse(int key, char *text, struct argp_state *state)
     switch (key) {
     case 'j':
         request->json = true;
+        return 0;
+    case KEY_PLUGIN:
+        if (request->plugins_count == PLUGINS_MAX)
+            argp_failure(state, STATUS_USAGE, 0, "more than %d plugins: '%s' is too much",
+                         PLUGINS_MAX, text);
+        request->plugins[request->plugins_count++] = text;
         return 0;
     case ARGP_KEY_ARG:
         if (request->what)
@@ -32,6 +42,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
 
 static const struct argp_option options[] = {
     {"json", 'j', NULL, 0, "one JSON object instead of a table", 0},
+    {"plugin", KEY_PLUGIN, "PATH", 0, "also this method; may be repeated", 0},
     {0},
 };
 
@@ -59,32 +70,41 @@ static void option_put(struct json_out *out, const struct option *option)
     json_close(out);
 }
 
-static enum status list_methods(struct arena *arena, struct json_out *out, struct error *error)
+static void method_put(struct arena *arena, struct json_out *out, const struct method *method)
 {
-    (void)error;
+    const char *kind = method->traits & TRAIT_CPU ? "CPU" : "GL";
+    const char *effects = effects_text(arena, method->traits & EFFECTS_ALL);
+    if (!out) {
+        printf("%-14s %-6s %-42s %s\n", method->name, kind, effects, method->summary);
+        return;
+    }
+    json_open(out, NULL, '{');
+    json_put_text(out, "name", method->name);
+    json_put_text(out, "kind", kind);
+    json_put_text(out, "effects", effects);
+    json_put_bool(out, "stochastic", method->traits & TRAIT_STOCHASTIC);
+    json_put_text(out, "summary", method->summary);
+    json_put_text(out, "source", method->source);
+    json_open(out, "options", '[');
+    for (const struct option *o = method->options; o && o->name; o++)
+        option_put(out, o);
+    json_close(out);
+    json_close(out);
+}
+
+static enum status list_methods(const struct request *request, struct arena *arena,
+                                struct json_out *out, struct error *error)
+{
+    const struct method *plugins[PLUGINS_MAX];
+    for (size_t i = 0; i < request->plugins_count; i++)
+        if (method_find(request->plugins[i], &plugins[i], error))
+            return error->status;
     if (!out)
         printf("%-14s %-6s %-42s %s\n", "method", "kind", "effects", "summary");
-    for (const struct method *const *each = methods_builtin; *each; each++) {
-        const struct method *method = *each;
-        const char *kind = method->traits & TRAIT_CPU ? "CPU" : "GL";
-        const char *effects = effects_text(arena, method->traits & EFFECTS_ALL);
-        if (!out) {
-            printf("%-14s %-6s %-42s %s\n", method->name, kind, effects, method->summary);
-            continue;
-        }
-        json_open(out, NULL, '{');
-        json_put_text(out, "name", method->name);
-        json_put_text(out, "kind", kind);
-        json_put_text(out, "effects", effects);
-        json_put_bool(out, "stochastic", method->traits & TRAIT_STOCHASTIC);
-        json_put_text(out, "summary", method->summary);
-        json_put_text(out, "source", method->source);
-        json_open(out, "options", '[');
-        for (const struct option *o = method->options; o && o->name; o++)
-            option_put(out, o);
-        json_close(out);
-        json_close(out);
-    }
+    for (const struct method *const *each = methods_builtin; *each; each++)
+        method_put(arena, out, *each);
+    for (size_t i = 0; i < request->plugins_count; i++)
+        method_put(arena, out, plugins[i]);
     return STATUS_OK;
 }
 
@@ -105,8 +125,10 @@ static void scene_put(struct json_out *out, const struct scene_summary *scene, c
     json_close(out);
 }
 
-static enum status list_scenes(struct arena *arena, struct json_out *out, struct error *error)
+static enum status list_scenes(const struct request *request, struct arena *arena,
+                               struct json_out *out, struct error *error)
 {
+    (void)request;
     char **names;
     size_t count;
     enum status status = scene_names(arena, &names, &count, error);
@@ -146,8 +168,10 @@ static void metrics_put(const struct metric_info *metric, struct json_out *out)
     }
 }
 
-static enum status list_metrics(struct arena *arena, struct json_out *out, struct error *error)
+static enum status list_metrics(const struct request *request, struct arena *arena,
+                                struct json_out *out, struct error *error)
 {
+    (void)request;
     (void)arena;
     (void)error;
     if (!out)
@@ -157,8 +181,10 @@ static enum status list_metrics(struct arena *arena, struct json_out *out, struc
     return STATUS_OK;
 }
 
-static enum status list_plants(struct arena *arena, struct json_out *out, struct error *error)
+static enum status list_plants(const struct request *request, struct arena *arena,
+                               struct json_out *out, struct error *error)
 {
+    (void)request;
     if (!out)
         printf("%-10s %10s %10s %9s %9s %8s %9s\n", "plant", "triangles", "vertices", "height_m",
                "radius_m", "MB", "build_ms");
@@ -197,7 +223,8 @@ static enum status list_plants(struct arena *arena, struct json_out *out, struct
 
 struct listing {
     const char *name;
-    enum status (*print)(struct arena *arena, struct json_out *out, struct error *error);
+    enum status (*print)(const struct request *request, struct arena *arena, struct json_out *out,
+                         struct error *error);
 };
 
 static const struct listing listings[] = {
@@ -232,7 +259,7 @@ int verb_list(int argc, char **argv)
             json_open(out, listings[i].name, '[');
         else if (printed)
             printf("\n");
-        status = listings[i].print(arena, out, &error);
+        status = listings[i].print(&request, arena, out, &error);
         if (out)
             json_close(out);
         printed++;
