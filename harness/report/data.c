@@ -12,16 +12,16 @@
 /* The errors that the page switches between: part of a picture's metrics, so that a page of ten
  * thousand cells stays small. They stand in the order of the views' values. */
 static const struct {
-    enum column_index same, full, floor;
     const char *heading;
+    enum column_index same, full, floor;
     bool one_minus; /* 1 is identical: 1 less the value is shown */
 } metrics[] = {
-    {COLUMN_same_flip, COLUMN_full_flip, COLUMN_floor_flip, "FLIP", false},
-    {COLUMN_same_rmse, COLUMN_full_rmse, COLUMN_floor_rmse, "RMSE", false},
-    {COLUMN_same_rmse_box8, COLUMN_full_rmse_box8, COLUMN_floor_rmse_box8, "RMSE-8", false},
-    {COLUMN_same_hdr_flip, COLUMN_full_hdr_flip, COLUMN_floor_hdr_flip, "HDR-FLIP", false},
-    {COLUMN_same_ssim, COLUMN_full_ssim, COLUMN_floor_ssim, "1 \u2212 SSIM", true},
-    {COLUMN_same_coverage, COLUMN_full_coverage, COLUMN_floor_coverage, "coverage error", false},
+    {"FLIP", COLUMN_same_flip, COLUMN_full_flip, COLUMN_floor_flip, false},
+    {"RMSE", COLUMN_same_rmse, COLUMN_full_rmse, COLUMN_floor_rmse, false},
+    {"RMSE-8", COLUMN_same_rmse_box8, COLUMN_full_rmse_box8, COLUMN_floor_rmse_box8, false},
+    {"HDR-FLIP", COLUMN_same_hdr_flip, COLUMN_full_hdr_flip, COLUMN_floor_hdr_flip, false},
+    {"1 \u2212 SSIM", COLUMN_same_ssim, COLUMN_full_ssim, COLUMN_floor_ssim, true},
+    {"coverage error", COLUMN_same_coverage, COLUMN_full_coverage, COLUMN_floor_coverage, false},
 };
 enum { METRICS_COUNT = sizeof metrics / sizeof *metrics };
 
