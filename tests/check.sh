@@ -41,6 +41,7 @@ part sanitize make -s -j"$jobs" CC=clang config=sanitize test
 part threads make -s -j"$jobs" CC=clang config=thread test T="test_metrics test_reference test_reference_noise"
 part clang build CC=clang all
 part egl make -s -j"$jobs" gl=egl test T="test_gl test_conform"
+build all >/dev/null # ./treeline is the release again, whatever was built last
 part cli tests/cli.sh
 part bad-input tests/bad_input.sh
 part fuzz make -s -j"$jobs" fuzz FUZZ_SECONDS=60
