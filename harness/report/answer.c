@@ -92,8 +92,8 @@ void answer_headline(const struct book *book, FILE *out)
     size_t *front = ARENA_ARRAY(book->arena, size_t, book->rows_count + 1), count;
     const struct group *group = answer_group(book, front, &count);
     if (!group) {
-        fputs("No cell has both a frame time and an error, so nothing can be said about which "
-              "method is the fastest.",
+        fputs("No method that draws trees has both a frame time and an error, so nothing can be "
+              "said about which is the fastest.",
               out);
         return;
     }

@@ -171,11 +171,13 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
 static void put_trade(const struct page *page)
 {
     const struct book *book = page->book;
+    size_t *front = ARENA_ARRAY(book->arena, size_t, book->rows_count + 1), count;
+    bool compared = answer_group(book, front, &count) != NULL;
     page_text(page, "<h2 id=\"trade\">Error against time</h2>\n");
     page_live(page, "live-trade");
     page_figures(page, FIGURE_TRADE_SAME, FIGURE_TRADE_FULL);
     answer_fronts(book, page->out);
-    page_text(page, book->effects_differ
+    page_text(page, book->effects_differ || !compared
                         ? ""
                         : "<p>Every method drew all the effects that its scene asks for, so the "
                           "error of the representation and the total error are the same.</p>\n");
