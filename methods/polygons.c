@@ -274,13 +274,13 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     return gl_check(workspace->gl, "polygons", workspace->error);
 }
 
-/* Tolerances a metre of a listed tree; 0 at full detail, where it is not asked for. */
-static float per_m_of(const struct state *state, const struct view *view, float focal_px,
-                      const struct cull_list *list, size_t i)
+/* How a listed tree is seen. */
+static struct levels_seen seen_of(const struct state *state, const struct view *view,
+                                  float focal_px, const struct cull_list *list, size_t i)
 {
     const struct instance *instance = &state->scene->instances[list->instances[i]];
-    return levels_per_m(&state->kinds[instance->species].levels, view, focal_px,
-                        state->tolerance_px, instance, list->depths_m[i]);
+    return levels_seen(&state->kinds[instance->species].levels, view, focal_px, state->tolerance_px,
+                       instance, list->depths_m[i]);
 }
 
 static struct levels_choice choose(const struct state *state, const struct levels *levels,
@@ -305,7 +305,7 @@ static struct cull_list place_trees(struct workspace *workspace, struct state *s
         uint32_t at = list.instances[i];
         const struct kind *kind = &state->kinds[scene->instances[at].species];
         struct levels_choice choice =
-            choose(state, &kind->levels, per_m_of(state, view, focal_px, &list, i));
+            choose(state, &kind->levels, seen_of(state, view, focal_px, &list, i).per_m);
         state->groups[i] = kind->first_group + plant_group(&kind->levels, &choice, state->runs[at]);
     }
     cull_group(state->cull, &list, state->groups, state->groups_count, state->first);
@@ -318,8 +318,9 @@ static struct cull_list place_trees(struct workspace *workspace, struct state *s
         for (uint32_t i = state->first[group]; i < state->first[group + 1]; i++) {
             const struct instance *instance = &scene->instances[list.instances[i]];
             const struct kind *kind = &state->kinds[instance->species];
-            placed[i] = plant_place(&kind->levels, group - kind->first_group, instance,
-                                    per_m_of(state, view, focal_px, &list, i), taper_of(state));
+            struct levels_seen seen = seen_of(state, view, focal_px, &list, i);
+            placed[i] = plant_place(&kind->levels, group - kind->first_group, instance, &seen,
+                                    taper_of(state));
         }
     gl->UnmapNamedBuffer(state->placed_buffer);
     return list;
@@ -413,10 +414,10 @@ static void draw_sifted(struct workspace *workspace, struct state *state, const 
                                    .low_m = kind->levels.low_m,
                                    .high_m = kind->levels.high_m,
                                    .radius_m = kind->levels.radius_m};
-        float per_m = per_m_of(state, view, focal_px, &list, i);
-        struct sift_part part = {.choice = choose(state, &kind->levels, per_m),
+        struct levels_seen seen = seen_of(state, view, focal_px, &list, i);
+        struct sift_part part = {.choice = choose(state, &kind->levels, seen.per_m),
                                  .run = state->runs[at],
-                                 .per_m = per_m,
+                                 .seen = seen,
                                  .taper = taper_of(state)};
         tree->runs_count =
             sift_plant_runs(kind->sift, &kind->levels, &part, state->sift_runs + runs);

@@ -91,6 +91,7 @@ static void test_levels__the_cover_of_boards_is_their_projected_area(void **stat
     mesh_bounds(mesh);
     const struct detail *detail = detail_create(arena, mesh, true);
     struct cover *cover = cover_create(arena, mesh, detail);
+    cover_look(cover, 0.35f, 0);
     double exact = 4 * sin(0.35); /* 4 square metres level, seen from 0.35 rad above */
     if (fabs(cover_plant(cover) / exact - 1) > 0.03)
         fail_msg("%g square metres, not %g", cover_plant(cover), exact);
@@ -170,7 +171,8 @@ static void test_levels__a_nearer_tree_never_has_fewer_elements(void **state)
         struct levels_choice choice = levels_choose(&levels, per_m);
         float kept = 5000;
         if (choice.step >= 0) {
-            struct levels_run run = levels_run_of(&levels, choice.step, per_m, true, 0.5f);
+            struct levels_seen seen = {per_m, 0.3f};
+            struct levels_run run = levels_run_of(&levels, choice.step, &seen, 0.5f);
             kept = run.kept;
             assert_true(kept >= 2 && isfinite(run.growth) && run.growth > 0);
         }

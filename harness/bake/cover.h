@@ -1,5 +1,5 @@
 /* How much of its surroundings a plant covers, and a run of its pruned elements: the union of their
- * triangles as seen from far away, on a grid of samples from three sides.
+ * triangles as seen from far away, on a grid of samples from five sides.
  *
  * Area alone does not keep a crown's look (Cook et al. 2007, 3.2): leaves hang in clumps and hide
  * each other, while few and large ones spread, so that the same area covers more. The size at which
@@ -12,12 +12,15 @@
 
 struct cover;
 
-/* The plant itself is looked at once, all triangles of its level 0. */
 struct cover *cover_create(struct arena *arena, const struct mesh *mesh,
                            const struct detail *detail);
 
-/* Square metres covered, the mean of the three sides. */
-double cover_plant(const struct cover *cover);
+/* From where what follows is looked at: an elevation, 0 level, pi/2 straight down. margin_m: how
+ * far beyond the plant its elements may reach. */
+void cover_look(struct cover *cover, float elevation_rad, float margin_m);
+
+/* Square metres that all triangles of level 0 cover, the mean of the sides. */
+double cover_plant(struct cover *cover);
 
 /* `kept` elements from `begin` on (around the end) as prune.h and polygons.glsl scale them; bark at
  * least as wide as `stout` is drawn whole, at a level, instead of the run's own. */

@@ -8,7 +8,7 @@
 #include "bake/detail.h"
 #include "bake/prune.h"
 
-enum { LEVELS_STEPS_MAX = 64, LEVELS_RUNS = 16 };
+enum { LEVELS_STEPS_MAX = 64, LEVELS_RUNS = 16, LEVELS_RISES = 5 };
 
 struct levels {
     struct cull_bound bound;
@@ -22,7 +22,9 @@ struct levels {
     uint32_t step_bark[LEVELS_STEPS_MAX];     /* the level of bark drawn with a step, */
     uint16_t step_stout[LEVELS_STEPS_MAX];    /* where at least so wide; else its elements are */
     uint32_t step_elements[LEVELS_STEPS_MAX]; /* descending, each 1/sqrt(2) of the one before */
-    float step_size[LEVELS_STEPS_MAX]; /* of an element, beside what keeps the plant's area */
+    /* size of an element, beside what keeps the plant's area, to the fourth; at evenly spaced rises
+     */
+    float step_size4[LEVELS_STEPS_MAX][LEVELS_RISES];
 };
 
 /* Where one of the LEVELS_RUNS runs of pruned elements begins. */
@@ -32,10 +34,14 @@ uint32_t levels_begin(const struct levels *levels, uint32_t run);
 void levels_fill(struct levels *levels, const struct mesh *mesh, const struct detail *detail,
                  const struct prune *prune, float taper);
 
-/* How many tolerances a metre of a tree is long, at the nearest point of the cylinder that holds
- * it. depth_m: of its middle along the view. */
-float levels_per_m(const struct levels *levels, const struct view *view, float focal_px,
-                   float tolerance_px, const struct instance *instance, float depth_m);
+/* How a tree is seen. */
+struct levels_seen {
+    float per_m; /* tolerances a metre at the nearest point of the cylinder that holds it */
+    float rise;  /* squared sine of the elevation it is seen from: 0 level, 1 straight down or up */
+};
+/* depth_m: of its middle along the view. */
+struct levels_seen levels_seen(const struct levels *levels, const struct view *view, float focal_px,
+                               float tolerance_px, const struct instance *instance, float depth_m);
 
 /* step < 0: the detail level, else that step of pruning. */
 struct levels_choice {
@@ -45,12 +51,12 @@ struct levels_choice {
 /* The choice with fewer triangles that keeps the tolerance; per_m 0: far enough for the last. */
 struct levels_choice levels_choose(const struct levels *levels, float per_m);
 
-/* The elements of a step that are kept, and their growth. smooth: as many as per_m asks for, else
- * the step's. */
+/* The elements of a step that are kept, and their growth. taper as in levels_fill: 0 keeps the
+ * step's elements, else as many as are asked for. */
 struct levels_run {
     float kept, growth;
 };
-struct levels_run levels_run_of(const struct levels *levels, int step, float per_m, bool smooth,
-                                float taper);
+struct levels_run levels_run_of(const struct levels *levels, int step,
+                                const struct levels_seen *seen, float taper);
 
 #endif

@@ -17,7 +17,8 @@ uint32_t plant_group(const struct levels *levels, const struct levels_choice *ch
 }
 
 struct plant_gl_placed plant_place(const struct levels *levels, uint32_t group,
-                                   const struct instance *instance, float per_m, float taper)
+                                   const struct instance *instance, const struct levels_seen *seen,
+                                   float taper)
 {
     struct plant_gl_placed placed = {
         .scale = instance->scale,
@@ -28,7 +29,7 @@ struct plant_gl_placed plant_place(const struct levels *levels, uint32_t group,
         return placed;
     uint32_t pruned = group - (uint32_t)levels->levels_count;
     int step = (int)(pruned / LEVELS_RUNS);
-    struct levels_run run = levels_run_of(levels, step, per_m, taper > 0, taper);
+    struct levels_run run = levels_run_of(levels, step, seen, taper);
     placed.kept = run.kept;
     placed.growth = run.growth;
     placed.begin = (float)levels_begin(levels, pruned % LEVELS_RUNS);

@@ -10,10 +10,10 @@ uint32_t plant_groups_count(const struct levels *levels);
 /* run: which run of pruned elements is the tree's. */
 uint32_t plant_group(const struct levels *levels, const struct levels_choice *choice, uint32_t run);
 
-/* What the shaders need of a tree of a group; per_m and taper as in levels.h, taper 0: the run has
- * the step's elements, else as many as per_m asks for. */
+/* What the shaders need of a tree of a group; taper as in levels_run_of. */
 struct plant_gl_placed plant_place(const struct levels *levels, uint32_t group,
-                                   const struct instance *instance, float per_m, float taper);
+                                   const struct instance *instance, const struct levels_seen *seen,
+                                   float taper);
 
 struct plant_command { /* DrawElementsIndirectCommand */
     uint32_t count, instances, first_index;

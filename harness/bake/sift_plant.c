@@ -119,8 +119,7 @@ size_t sift_plant_runs(const struct sift_plant *plant, const struct levels *leve
             runs[count++] = (struct sift_run){.set = set, .kept = (float)kept, .growth = 1};
     }
     if (pruned) {
-        struct levels_run kept =
-            levels_run_of(levels, step, part->per_m, part->taper > 0, part->taper);
+        struct levels_run kept = levels_run_of(levels, step, &part->seen, part->taper);
         runs[count++] = (struct sift_run){.set = plant->pruned,
                                           .begin = levels_begin(levels, part->run),
                                           .kept = kept.kept,

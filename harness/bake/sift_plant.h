@@ -31,8 +31,9 @@ struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *d
  * batches_count + 1 runs; returns how many. */
 struct sift_part {
     struct levels_choice choice;
-    uint32_t run;       /* of pruned elements, the tree's own */
-    float per_m, taper; /* as in levels.h; taper 0: runs have the step's elements */
+    uint32_t run; /* of pruned elements, the tree's own */
+    struct levels_seen seen;
+    float taper; /* as in levels_run_of */
 };
 size_t sift_plant_runs(const struct sift_plant *plant, const struct levels *levels,
                        const struct sift_part *part, struct sift_run *runs);
