@@ -163,9 +163,13 @@ static void match_cover(struct levels *levels, const struct mesh *mesh, const st
         arena_destroy(passing);
         return;
     }
-    struct cover *cover = cover_create(passing, mesh, detail);
+    struct cover *covers[LEVELS_RISES];
+    for (int rise = 0; rise < LEVELS_RISES; rise++)
+        covers[rise] = cover_create(passing, mesh, detail);
     float reach_m = element_reach(prune);
+#pragma omp parallel for schedule(dynamic)
     for (int rise = 0; rise < LEVELS_RISES; rise++) {
+        struct cover *cover = covers[rise];
         float elevation_rad = asinf(sqrtf((float)rise / (LEVELS_RISES - 1)));
         cover_look(cover, elevation_rad, 0);
         double wanted = log(cover_plant(cover)), size_log = 0;
