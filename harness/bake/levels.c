@@ -12,7 +12,7 @@
  * tolerance. */
 static const float BARK_SHARE = 0.125f;
 /* Stems of this mean width, in tolerances, are still drawn whole: their feet are twice as wide. */
-static const float STOUT_WIDTH = 0.5f;
+static const float STOUT_WIDTH = 0.7f;
 
 /* Elements that are looked at to find a step's cover, and how well it is matched. */
 enum { RUN_ELEMENTS = 4096, MATCH_ROUNDS = 4 };
