@@ -73,9 +73,9 @@ static void put_clause(const struct book *book, const struct group *group, const
     double bound = before ? flip_of(before) : INFINITY;
     if (!before)
         fprintf(out, "where a FLIP error of %s is good enough, ",
-                number_plain(flip_of(row), 2).text);
+                number_plain(flip_of(row), 3).text);
     else
-        fprintf(out, "; below %s, ", number_plain(bound, 2).text);
+        fprintf(out, "; below %s, ", number_plain(bound, 3).text);
     put_method(book, row, out);
     fputs(before ? " (" : " is the fastest (", out);
     put_speed(row, out);
@@ -110,7 +110,7 @@ void answer_headline(const struct book *book, FILE *out)
         put_clause(book, group, &book->rows[front[told[k]]], before, out);
     }
     const struct row *last = &book->rows[front[count - 1]];
-    fprintf(out, ". No error below %s was reached.", number_plain(flip_of(last), 2).text);
+    fprintf(out, ". No error below %s was reached.", number_plain(flip_of(last), 3).text);
 }
 
 /* Rows of the tables of answers. */
