@@ -93,7 +93,7 @@ mesh("long.glb", b"glTF" + struct.pack("<IIII", 2, 2 ** 31, 2 ** 31 - 30, 0x4E4F
 mesh("count.ply", "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n0\n")
 mesh("list.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty list uint float x\nend_header\n\xff\xff\xff\xff1234")
 
-lines = open(f"{top}/results/baselines/quick-xeon-2cores/cells.jsonl").read().split("\n")
+lines = open(f"{top}/tests/results-v1/cells.jsonl").read().split("\n")
 head, line = lines[0], lines[1]
 def r(name, data): put(f"r-{name}/cells.jsonl", data)
 r("good", f"{head}\n{line}\n"); r("crlf", f"{head}\r\n{line}\r\n"); r("bom", b"\xef\xbb\xbf" + f"{head}\n{line}\n".encode())
