@@ -28,8 +28,9 @@ static float run_area(float kept, float taper)
     if (kept > EXACT_ELEMENTS || taper <= 0)
         return kept * (1 - taper * 2 / 3);
     float sum = 0, slope = 1 / (taper * kept);
-    for (float left = kept - 0.5f; left > 0; left -= 1) {
-        float size = fminf(left * slope, 1);
+    int count = (int)ceilf(kept - 0.5f);
+    for (int i = 0; i < count; i++) {
+        float size = fminf((kept - 0.5f - (float)i) * slope, 1);
         sum += size * size;
     }
     return sum;

@@ -63,10 +63,11 @@ size_t plant_commands(const struct levels *levels, const struct plant_gl_batch *
         struct detail_range range = group_range(levels, batch, g);
         if (trees == 0 || range.indices_count == 0)
             continue;
-        commands[count++] = (struct plant_command){.count = range.indices_count,
-                                                   .instances = trees,
-                                                   .first_index = range.first_index,
-                                                   .base_instance = base};
+        commands[count] = (struct plant_command){.count = range.indices_count,
+                                                 .instances = trees,
+                                                 .first_index = range.first_index,
+                                                 .base_instance = base};
+        count++;
         *triangles += (uint64_t)range.indices_count / 3 * trees;
     }
     return count;

@@ -107,10 +107,9 @@ static void share_rows(struct sift *sift, const struct view *view)
     for (int b = 0; b < sift->threads; b++) {
         sift->bands[b] = (struct band){.low_row = b ? sift->bands[b - 1].high_row : 0};
         double end = all * (b + 1) / sift->threads;
-        double row = slot;
         while (slot < SLOTS && sum + load[slot] <= end)
             sum += load[slot++];
-        row = slot < SLOTS && load[slot] > 0 ? slot + (end - sum) / load[slot] : slot;
+        double row = slot < SLOTS && load[slot] > 0 ? slot + (end - sum) / load[slot] : slot;
         int high = (int)(row / SLOTS * view->height_px);
         sift->bands[b].high_row = b + 1 == sift->threads ? view->height_px : high;
         if (sift->bands[b].high_row < sift->bands[b].low_row)
