@@ -1,0 +1,36 @@
+/* The steps from triangles to voxels: a sparse grid of what rays meet, its pyramid. */
+#ifndef TREELINE_BAKE_VOXELS_PARTS_H
+#define TREELINE_BAKE_VOXELS_PARTS_H
+
+#include "bake/voxels.h"
+
+enum { VOXEL_RAYS = 8 }; /* along a voxel's side */
+
+/* What a voxel holds. Areas in units of the finest voxels' faces. */
+struct voxel_mass {
+    float area, bark; /* of all, of bark; bark's back faces hide nothing and count half */
+    float moments[6]; /* sum of area n n': xx, yy, zz, xy, xz, yz */
+    float facing[3];  /* sum of area |n_i| */
+    float albedo[3];  /* sum of area x albedo */
+    float cover[3];   /* share of the rays along each axis that meet something */
+    uint64_t rays[3]; /* which: bit b + 8 c, b and c the other two axes in cyclic order */
+};
+
+struct voxel_grid {
+    uint32_t size[3];
+    uint32_t *cells; /* 0: empty; else 1 + index into masses */
+    size_t count, capacity;
+    struct voxel_mass *masses;
+};
+
+/* The finest grid: size given, its cells of side voxel_m from origin_m on. */
+enum status voxel_grid_fill(struct arena *arena, const struct mesh *mesh, const float origin_m[3],
+                            float voxel_m, struct voxel_grid *grid, struct error *error);
+/* Half as fine. */
+void voxel_grid_halve(struct arena *arena, const struct voxel_grid *fine,
+                      struct voxel_grid *coarse);
+/* Empty cells (0) become their Chebyshev distance to the nearest full one, at most 255; full ones
+ * stay and must be VOXELS_FIRST or more. */
+void voxel_distances(const uint32_t size[3], uint32_t *cells);
+
+#endif
