@@ -323,8 +323,8 @@ static uint64_t hash_of(const struct mesh *mesh)
 static void test_seed__gives_the_same_tree_again_and_another_for_another(void **state)
 {
     (void)state;
-    const char *const generators[] = {"poplar", "oak"};
-    for (int i = 0; i < 2; i++) {
+    const char *const generators[] = {"poplar", "oak", "hypertexture"};
+    for (int i = 0; i < 3; i++) {
         struct arena *arena = arena_create(0);
         uint64_t one = hash_of(built(arena, generators[i], "seed=3"));
         assert_true(one == hash_of(built(arena, generators[i], "seed=3")));
@@ -412,7 +412,7 @@ static void test_options__out_of_range_are_refused_by_name(void **state)
     refused("oak", "leafs=7", STATUS_INVALID, "no option 'leafs'");
     refused("oak", "height=40,width=3", STATUS_INVALID, "width: 3 is outside 20..120");
     refused("elm", NULL, STATUS_NOT_FOUND,
-            "no plant 'elm'; plants that can be generated are poplar, oak");
+            "no plant 'elm'; plants that can be generated are poplar, oak, hypertexture");
 }
 
 static void test_options__at_their_ends_give_valid_trees(void **state)
@@ -437,7 +437,8 @@ static void test_plant_options__lists_every_generators_table(void **state)
     for (size_t i = 0; plant_generators[i]; i++) {
         const struct option *table = plant_options(plant_generators[i]);
         assert_non_null(table);
-        assert_string_equal(table->name, "height");
+        bool ball = strcmp(plant_generators[i], "hypertexture") == 0;
+        assert_string_equal(table->name, ball ? "radius" : "height");
     }
     assert_null(plant_options("elm"));
 }

@@ -17,6 +17,6 @@ struct generator {
                          struct error *error);
 };
 
-extern const struct generator poplar_generator, oak_generator;
+extern const struct generator poplar_generator, oak_generator, hypertexture_generator;
 
 #endif

@@ -21,10 +21,11 @@ struct plant {
     struct plant_cost cost;
 };
 
-static const struct generator *const generators[] = {&poplar_generator, &oak_generator};
+static const struct generator *const generators[] = {&poplar_generator, &oak_generator,
+                                                     &hypertexture_generator};
 enum { GENERATORS_COUNT = sizeof generators / sizeof *generators };
 
-const char *const plant_generators[] = {"poplar", "oak", NULL};
+const char *const plant_generators[] = {"poplar", "oak", "hypertexture", NULL};
 
 static const struct generator *find(const char *name)
 {
@@ -53,8 +54,9 @@ enum status plant_generated(struct arena *arena, const char *generator, const ch
 {
     const struct generator *found = find(generator);
     if (!found)
-        return error_set(error, STATUS_NOT_FOUND,
-                         "no plant '%s'; plants that can be generated are poplar, oak", generator);
+        return error_set(
+            error, STATUS_NOT_FOUND,
+            "no plant '%s'; plants that can be generated are poplar, oak, hypertexture", generator);
     struct plant *made = plant_new(arena, generator);
     made->generator = found;
     options_default(found->options, made->options);

@@ -8,7 +8,7 @@
 
 struct plant; /* opaque; belongs to an arena */
 
-/* The plants that can be generated, ends with NULL: "poplar", "oak". */
+/* The plants that can be generated, ends with NULL: "poplar", "oak", "hypertexture". */
 extern const char *const plant_generators[];
 
 /* A generated plant: generator's name, its options as text ("height=20,seed=3", NULL: defaults).
