@@ -34,7 +34,7 @@ refuses 'an unknown scene names the nearest' 66 'tiny' run --scene tinny --metho
 refuses 'an unknown method names the nearest' 66 "did you mean 'null'" run --scene tiny --method nul
 refuses 'an option that a method does not have' 65 'views' run --scene tiny --method null:views=3
 refuses 'a plugin that does not exist' 66 'no/such.so' run --scene tiny --method no/such.so
-refuses 'a plugin of another ABI' 65 'ABI 2' run --scene tiny --method "$plugins/old.so"
+refuses 'a plugin of another ABI' 65 'ABI 1' run --scene tiny --method "$plugins/old.so"
 refuses 'an unknown plan lists the plans' 66 'smoke' run no-such-plan
 refuses 'a filter that matches nothing' 65 'none of the 1 cells' run "${good[@]}" --filter trees=9
 refuses 'a filter that is no expression' 65 'regular expression' run "${good[@]}" --filter '('
@@ -141,11 +141,11 @@ if python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); assert d["cells"
 else
   bad 'the table as JSON' "$(head -c 300 "$work/out")"
 fi
-if python3 - "$work/run/cells.jsonl" <<'P'; then ok 'every line is strict JSON of version 2'; else bad 'every line is strict JSON of version 2'; fi
+if python3 - "$work/run/cells.jsonl" <<'P'; then ok 'every line is strict JSON of version 3'; else bad 'every line is strict JSON of version 3'; fi
 import json, sys
 def no(x): raise ValueError(x)
 for line in open(sys.argv[1]):
-    assert json.loads(line, parse_constant=no)["version"] == 2
+    assert json.loads(line, parse_constant=no)["version"] == 3
 P
 
 once=(--frame-seconds 0.02 --frames-max 5 --views 1 --reference-error 0.1 --reference-samples 16 -q)
@@ -155,7 +155,7 @@ try run "${good[@]}" "${once[@]}" --rounds 2 --target rgba8,rgba16f --out "$work
 is 'a resumed run does not calibrate again' "$(grep -c '"kind":"treeline-calibration"' "$work/limits/cells.jsonl")" -eq 2
 is 'its results are all there' "$(lines "$work/limits/cells.jsonl")" -eq 7
 try calibrate --seconds 0.05 --size 128x128 --threads 1
-is 'calibrate prints a row for each kind of work' $rc -eq 0 -a "$(grep -cE '^[a-z_0-9]+ +[0-9.e+]+ ' "$work/out")" -eq 19
+is 'calibrate prints a row for each kind of work' $rc -eq 0 -a "$(grep -cE '^[a-z_0-9]+ +[0-9.e+]+ ' "$work/out")" -eq 21
 try calibrate --seconds 0.05 --size 128x128 --json
 is 'calibrate --json prints the record' "$(python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); print(all(m["rate"] > 0 for m in d["measures"].values()))' "$work/out")" = True
 refuses 'a picture too small to calibrate on' 64 "--size: '3x3' is not WxH in pixels, each side in 128..2048" calibrate --size 3x3

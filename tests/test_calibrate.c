@@ -188,8 +188,35 @@ static void test_calibrate__memory_is_copied_and_added_whole(void **state)
     works[CALIBRATION_memory_triad].pass(&bench, CALIBRATION_memory_triad, 1);
     for (size_t i = 0; i < COUNT; i++)
         check_near(bench.a[i], (double)i + 3, 0);
+    uint64_t sum = 0;
+    for (size_t i = 0; i < COUNT; i++) {
+        uint64_t bits;
+        memcpy(&bits, &(double){(double)i + 3}, sizeof bits);
+        sum += 3 * bits;
+    }
+    works[CALIBRATION_memory_read].pass(&bench, CALIBRATION_memory_read, 3);
+    assert_true(bench.sum == sum);
+    check_near(works[CALIBRATION_memory_read].count, 8.0 * COUNT, 0);
     check_near(works[CALIBRATION_memory_copy].count, 16.0 * COUNT, 0);
     check_near(works[CALIBRATION_memory_triad].count, 24.0 * COUNT, 0);
+    arena_destroy(arena);
+}
+
+/* Every word is its place: places that fill the words evenly have their mean. */
+static void test_calibrate__lookups_meet_all_of_each_thread_s_words(void **state)
+{
+    (void)state;
+    enum { THREADS = 3, LOOPS = 4 };
+    struct arena *arena = arena_create(0);
+    struct work works[CALIBRATION_COUNT];
+    struct memory_bench bench;
+    memory_bench_create(arena, 16, THREADS, &bench, works);
+    struct work *work = &works[CALIBRATION_lookups_near];
+    check_near(work->count, (double)THREADS * LOOKUP_WORDS, 0);
+    work->pass(work->bench, CALIBRATION_lookups_near, LOOPS);
+    for (int thread = 0; thread < THREADS; thread++)
+        check_near((double)bench.near_sums[thread] / (LOOPS * LOOKUP_WORDS),
+                   0.5 * (LOOKUP_WORDS - 1), 2);
     arena_destroy(arena);
 }
 
@@ -243,6 +270,7 @@ int main(void)
         cmocka_unit_test(test_calibrate__culled_and_outside_triangles_shade_nothing),
         cmocka_unit_test(test_calibrate__draw_calls_are_as_many_as_counted),
         cmocka_unit_test(test_calibrate__memory_is_copied_and_added_whole),
+        cmocka_unit_test(test_calibrate__lookups_meet_all_of_each_thread_s_words),
         cmocka_unit_test(test_calibrate__a_secondary_ray_starts_at_every_hit),
         cmocka_unit_test(test_calibrate__every_rate_lies_in_its_interval),
     };

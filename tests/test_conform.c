@@ -121,7 +121,7 @@ static void test_conform__each_way_to_misbehave_is_told_apart(void **unused)
         {"leaves-at-load", "load", STATUS_CRASH, STATUS_CRASH,
          "leaves by exit code 0 when it is loaded"},
         {"hangs-at-load", "load", STATUS_TIMEOUT, STATUS_TIMEOUT, "in: loading the method"},
-        {"old", "load", STATUS_INVALID, STATUS_INVALID, "was built for method ABI 2"},
+        {"old", "load", STATUS_INVALID, STATUS_INVALID, "was built for method ABI 1"},
         {"none", "load", STATUS_NOT_FOUND, STATUS_NOT_FOUND, "No such file"},
     };
     struct arena *arena = arena_create(0);

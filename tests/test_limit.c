@@ -37,6 +37,9 @@ static struct calibration round_machine(void)
         {CALIBRATION_triangles_shared, 10e6, 2},  {CALIBRATION_quads_2px, 4e6, 16},
         {CALIBRATION_quads_8px, 2e6, 64},         {CALIBRATION_quads_32px, 0.5e6, 512},
         {CALIBRATION_vertices, 150e6, NAN},       {CALIBRATION_calls_bare, 2e6, NAN},
+        {CALIBRATION_rays_primary, 10e6, NAN},    {CALIBRATION_rays_shadow, 5e6, NAN},
+        {CALIBRATION_lookups_near, 2e9, NAN},     {CALIBRATION_memory_read, 20e9, NAN},
+        {CALIBRATION_memory_copy, 16e9, NAN},     {CALIBRATION_memory_triad, 18e9, NAN},
     };
     for (size_t i = 0; i < CALIBRATION_COUNT; i++)
         made.measures[i] = (struct calibration_measure){{NAN, NAN, NAN}, NAN};
@@ -77,7 +80,9 @@ static struct limit limit_with(double calls, double vertices, double primitives,
                                double frame_seconds)
 {
     struct calibration machine = round_machine();
-    struct result result = {.cell = {.width_px = 800, .height_px = 600}};
+    struct cell cell = {.width_px = 800, .height_px = 600};
+    struct result result;
+    result_init(&result, &cell, 0);
     result.draw_calls = calls;
     result.vertices = vertices;
     result.primitives = primitives;
@@ -140,6 +145,46 @@ static void test_limit__what_was_not_counted_bounds_nothing(void **state)
     assert_true(isnan(limit.seconds.value));
 }
 
+/* A cell without OpenGL that counted so much, in a frame of so many seconds. */
+static struct limit limit_counted(double rays, double occlusion_rays, double lookups, double bytes,
+                                  double frame_seconds)
+{
+    struct calibration machine = round_machine();
+    struct cell cell = {.width_px = 800, .height_px = 600};
+    struct result result;
+    result_init(&result, &cell, 0);
+    result.rays = rays;
+    result.occlusion_rays = occlusion_rays;
+    result.lookups = lookups;
+    result.moved_bytes = bytes;
+    return limit_of(&machine, &result,
+                    (struct interval){frame_seconds, 0.5 * frame_seconds, 4 * frame_seconds});
+}
+
+static void test_limit__a_cell_without_opengl_is_bound_by_what_it_counted(void **state)
+{
+    (void)state;
+    /* A ray a pixel at 10 M/s: 48 ms; 120,000 to the sun at 5 M/s: 24 ms more. */
+    check_limit(limit_counted(480000, NAN, NAN, 7.68e6, 0.096), LIMIT_RAYS, 0.048, 0.5);
+    check_limit(limit_counted(480000, 120000, NAN, 7.68e6, 0.096), LIMIT_RAYS, 0.072, 0.75);
+    check_limit(limit_counted(NAN, 120000, NAN, 7.68e6, 0.096), LIMIT_RAYS, 0.024, 0.25);
+    /* 20 million at 2 G/s; the picture's 7.68 MB at 20 GB/s, the fastest of three. */
+    struct limit limit = limit_counted(NAN, NAN, 20e6, 7.68e6, 0.04);
+    check_limit(limit, LIMIT_LOOKUPS, 0.010, 0.25);
+    check_near(limit.bounds[LIMIT_MEMORY], 7.68e6 / 20e9, 1e-12);
+    assert_true(isnan(limit.bounds[LIMIT_RAYS]) && isnan(limit.bounds[LIMIT_FILL]));
+    check_limit(limit_counted(NAN, NAN, 20e6, 400e6, 0.04), LIMIT_MEMORY, 0.020, 0.5);
+}
+
+static void test_limit__a_frame_faster_than_its_bytes_found_them_in_caches(void **state)
+{
+    (void)state;
+    struct limit limit = limit_counted(NAN, NAN, 20e6, 400e6, 0.019);
+    assert_true(limit.cached && isnan(limit.bounds[LIMIT_MEMORY]));
+    assert_int_equal(limit.resource, LIMIT_LOOKUPS);
+    assert_false(limit_counted(NAN, NAN, 20e6, 400e6, 0.021).cached);
+}
+
 static void test_limit__is_told_by_a_calibration_of_the_same_kind(void **state)
 {
     (void)state;
@@ -161,6 +206,11 @@ static void test_limit__is_told_by_a_calibration_of_the_same_kind(void **state)
     result.threads = 4;
     assert_null(limit_calibration(&run, &result));
     result.threads = 2;
+    /* Rays and memory do not ask for a format or a renderer. */
+    result.renderer = "cpu";
+    result.cell.format = TARGET_RGBA32F;
+    assert_non_null(limit_calibration(&run, &result));
+    assert_int_equal(limit_calibration(&run, &result)->threads, 2);
     result.renderer = NULL;
     assert_null(limit_calibration(&run, &result));
 }
@@ -218,7 +268,7 @@ static void check_refused(const char *from, const char *to, const char *word)
 static void test_calibration__a_malformed_line_names_key_and_value(void **state)
 {
     (void)state;
-    check_refused("\"version\":2", "\"version\":3", "this treeline reads version 1 to 2");
+    check_refused("\"version\":3", "\"version\":4", "this treeline reads version 1 to 3");
     check_refused(CALIBRATION_KIND, "treeline-run", CALIBRATION_KIND);
     check_refused("\"rgba8\"", "\"rgb\"", "rgba8|rgba16f|rgba32f");
     check_refused("\"threads\":2", "\"threads\":0", "threads");
@@ -376,6 +426,8 @@ int main(void)
         cmocka_unit_test(test_limit__bounds_are_counts_over_rates),
         cmocka_unit_test(test_limit__a_frame_that_mixes_sizes_is_held_against_culled_triangles),
         cmocka_unit_test(test_limit__what_was_not_counted_bounds_nothing),
+        cmocka_unit_test(test_limit__a_cell_without_opengl_is_bound_by_what_it_counted),
+        cmocka_unit_test(test_limit__a_frame_faster_than_its_bytes_found_them_in_caches),
         cmocka_unit_test(test_limit__is_told_by_a_calibration_of_the_same_kind),
         cmocka_unit_test(test_calibration__a_line_reads_back_to_the_same_values),
         cmocka_unit_test(test_calibration__a_malformed_line_names_key_and_value),

@@ -304,8 +304,8 @@ static void test_run__what_is_no_run_is_refused_and_left_as_it_is(void **state)
     static const char *const texts[] = {
         "a thesis without an end",
         "two lines\nof a thesis",
-        "{\"version\":3,\"kind\":\"treeline-run\"",
-        "{\"version\":3,\"kind\":\"treeline-run\"}\n{\"version\":3,\"cell\":\"cut",
+        "{\"version\":4,\"kind\":\"treeline-run\"",
+        "{\"version\":4,\"kind\":\"treeline-run\"}\n{\"version\":4,\"cell\":\"cut",
     };
     struct arena *arena = arena_create(0);
     struct error error = {0};
@@ -355,9 +355,9 @@ static void test_run__a_malformed_line_is_named_by_its_number(void **state)
     bad_file(arena_printf(arena, "%s\n%s\n\n%s\n", first, good, good), "cells.jsonl:3", "JSON");
     bad_file(arena_printf(arena, "%s\n{\"version\":1}\n%s\n", first, good), "cells.jsonl:2",
              "cell: is missing");
-    bad_file(arena_printf(arena, "%s\n{\"version\":3}\n", first), "cells.jsonl:2",
-             "version 1 to 2");
-    bad_file("{\"version\":3,\"kind\":\"treeline-run\"}\n", "cells.jsonl:1", "version 1 to 2");
+    bad_file(arena_printf(arena, "%s\n{\"version\":4}\n", first), "cells.jsonl:2",
+             "version 1 to 3");
+    bad_file("{\"version\":4,\"kind\":\"treeline-run\"}\n", "cells.jsonl:1", "version 1 to 3");
     bad_file("{\"version\":1}\n", "cells.jsonl:1", "treeline-run");
     bad_file("", "no whole line", "provenance");
     char *unknown = arena_printf(arena, "{\"more\":1,%s", good + 1);

@@ -31,8 +31,13 @@ void ray_bench_destroy(struct ray_bench *bench);
 struct memory_bench {
     size_t count;
     int threads;
-    double *a, *b, *c; /* a: 0, b: its place, c: 1 */
+    double *a, *b, *c;   /* a: 0, b: its place, c: 1 */
+    uint64_t sum;        /* of the bits that memory_read met last */
+    uint64_t *near;      /* threads x LOOKUP_WORDS; each word is its place */
+    uint64_t *near_sums; /* threads: of what lookups_near met last */
 };
+#define LOOKUP_WORDS                                                                               \
+    ((size_t)32 << 10) /* 256 KiB: beyond a core's first cache, within its second */
 #define MEMORY_BENCH_VALUES ((size_t)8 << 20) /* 64 MiB an array: beyond most caches */
 void memory_bench_create(struct arena *arena, size_t count, int threads, struct memory_bench *bench,
                          struct work works[CALIBRATION_COUNT]);

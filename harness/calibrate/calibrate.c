@@ -21,7 +21,8 @@ const char *calibration_unit(enum calibration_kind kind, double *factor)
     } units[] = {
         [CALIBRATION_FILL] = {"Mpix/s", 1e-6},      [CALIBRATION_TRIANGLES] = {"Mtri/s", 1e-6},
         [CALIBRATION_VERTICES] = {"Mvert/s", 1e-6}, [CALIBRATION_CALLS] = {"kcalls/s", 1e-3},
-        [CALIBRATION_RAYS] = {"Mrays/s", 1e-6},     [CALIBRATION_MEMORY] = {"GB/s", 1e-9},
+        [CALIBRATION_RAYS] = {"Mrays/s", 1e-6},     [CALIBRATION_LOOKUPS] = {"Mloads/s", 1e-6},
+        [CALIBRATION_MEMORY] = {"GB/s", 1e-9},
     };
     *factor = units[kind].factor;
     return units[kind].unit;

@@ -29,6 +29,8 @@
     X(rays_primary, RAYS, "ray", "at one poplar, packets of 16 neighbours")                        \
     X(rays_shadow, RAYS, "ray", "from what they hit to the sun, packets of 16")                    \
     X(rays_ambient, RAYS, "ray", "from what they hit into the hemisphere, packets of 16")          \
+    X(lookups_near, LOOKUPS, "load", "of 8 bytes from scattered places in 256 KiB a thread")       \
+    X(memory_read, MEMORY, "B", "all of a added up; bytes read")                                   \
     X(memory_copy, MEMORY, "B", "a = b; bytes read and written")                                   \
     X(memory_triad, MEMORY, "B", "a = b + s c; bytes read and written")
 
@@ -38,6 +40,7 @@ enum calibration_kind { /* of work that is counted */
                         CALIBRATION_VERTICES,
                         CALIBRATION_CALLS,
                         CALIBRATION_RAYS,
+                        CALIBRATION_LOOKUPS,
                         CALIBRATION_MEMORY
 };
 

@@ -52,11 +52,26 @@ static enum status calibration_do(struct arena *arena, struct calibrate_request 
     return STATUS_OK;
 }
 
-/* The cells of this format that OpenGL draws: their largest picture. False when there is none. */
+static bool all_without_gl(const struct plan *plan)
+{
+    for (size_t i = 0; i < plan->cells_count; i++)
+        if (!(plan->cells[i].method->traits & TRAIT_CPU))
+            return false;
+    return plan->cells_count > 0;
+}
+
+/* The cells of this format that OpenGL draws: their largest picture. Where it draws none, the first
+ * cell's picture stands for all, for rays and memory do not ask for its size. False when there is
+ * none. */
 static bool largest_picture(const struct plan *plan, enum target_format format,
                             struct calibrate_request *request)
 {
     double most = 0;
+    if (all_without_gl(plan)) {
+        request->width_px = plan->cells->width_px;
+        request->height_px = plan->cells->height_px;
+        return plan->cells->format == format;
+    }
     for (size_t i = 0; i < plan->cells_count; i++) {
         const struct cell *cell = &plan->cells[i];
         double pixels = (double)cell->width_px * cell->height_px;

@@ -14,7 +14,8 @@ struct album {
     size_t count;
     uint64_t draw_calls, triangles;
     struct gl_statistics statistics;
-    size_t pairs; /* of a picture and the path's next one, both compared */
+    struct tally tally; /* the method's own counts */
+    size_t pairs;       /* of a picture and the path's next one, both compared */
     double flicker_squared, flicker_variance, flicker_worst;
     size_t flicker_view;
 };
@@ -65,7 +66,13 @@ static enum status picture_draw(struct stage *stage, const struct view *view, st
         gl_counters_reset(stage->gl);
         gl_statistics_begin(stage->gl);
     }
+    struct tally before = stage->workspace.tally;
     enum status status = stage_draw(stage, view, NULL);
+    const struct tally *after = &stage->workspace.tally;
+    album->tally.rays += after->rays - before.rays;
+    album->tally.occlusion_rays += after->occlusion_rays - before.occlusion_rays;
+    album->tally.lookups += after->lookups - before.lookups;
+    album->tally.bytes += after->bytes - before.bytes;
     if (stage->gl) {
         struct gl_statistics one = gl_statistics_end(stage->gl);
         album->statistics.vertices += one.vertices;
@@ -224,6 +231,27 @@ static void album_flicker(struct result *result, const struct album *album)
                                        .peak_frame = album->flicker_view};
 }
 
+/* The mean over the pictures; what was never counted is not known. */
+static double mean_count(uint64_t sum, size_t count)
+{
+    return sum ? (double)sum / (double)count : NAN;
+}
+
+/* The picture itself, written once, is the least that a frame moves. */
+static void album_tally(struct stage *stage, const struct album *album)
+{
+    static const double pixel_bytes[] = {
+        [TARGET_RGBA8] = 4, [TARGET_RGBA16F] = 8, [TARGET_RGBA32F] = 16};
+    const struct target *target = &stage->target;
+    struct result *result = stage->result;
+    result->rays = mean_count(album->tally.rays, album->count);
+    result->occlusion_rays = mean_count(album->tally.occlusion_rays, album->count);
+    result->lookups = mean_count(album->tally.lookups, album->count);
+    result->moved_bytes = (double)album->tally.bytes / (double)album->count +
+                          pixel_bytes[stage->gl ? target->format : TARGET_RGBA32F] *
+                              target->width_px * target->height_px;
+}
+
 static void album_counts(struct result *result, const struct album *album, bool statistics)
 {
     double count = (double)album->count;
@@ -282,6 +310,8 @@ enum status stage_pictures(struct stage *stage)
         status = view_picture(stage, i, album.count, &album);
     if (!status && stage->gl)
         album_counts(result, &album, stage->gl->has_pipeline_statistics);
+    if (!status)
+        album_tally(stage, &album);
     if (!status)
         album_flicker(result, &album);
     return status;

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "wall/gl.h"
 
-#define METHOD_ABI 1u
+#define METHOD_ABI 2u
 
 /* What a method is and which effects it models. The low bits are EFFECT_*. */
 enum {
@@ -16,6 +16,20 @@ enum {
     TRAIT_STOCHASTIC =
         1u << 17, /* its noise depends on the seed; still the same bytes for the same seed */
     TRAIT_NO_TREES = 1u << 18, /* sky and terrain alone: a floor for the others */
+};
+
+/* What frames did of that which the harness cannot count itself. A method without OpenGL adds
+ * (workspace->tally.rays += ...) what each call of draw did, summed in its threads first, so that counting
+ * costs no time; for the same view the same figures. The harness takes the difference over a
+ * picture; what stays 0 is not counted. With the machine's calibrated rates it tells what bounds a
+ * cell (results/limit.h), so count what any program with this algorithm had to do, not waste. */
+struct tally {
+    uint64_t rays;           /* to the nearest triangle (embree_intersect), lanes, not packets */
+    uint64_t occlusion_rays; /* to any triangle (embree_occluded) */
+    uint64_t lookups;        /* loads of up to 8 bytes from places that rays or pixels decide: a
+                                voxel, a texel, a corner of a filter, a node; each lane for itself */
+    uint64_t bytes; /* that the frame must read or write, each counted once however often it
+                       is used; without the picture, which the harness adds */
 };
 
 /* Lives as long as the cell; nothing to free. */
@@ -28,6 +42,7 @@ struct workspace {
     enum target_format format; /* of every target that will come */
     int threads;               /* that a CPU method may use, and llvmpipe uses */
     uint64_t seed;
+    struct tally tally; /* of all frames so far */
 };
 
 struct method {          /* its name is its file's name, '-' written '_' in C */

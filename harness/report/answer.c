@@ -153,7 +153,7 @@ void answer_fronts(const struct book *book, FILE *out)
                 told, book->groups_count);
 }
 
-struct tally {
+struct standing {
     size_t groups, succeeded, on_front;
     double *slowdowns, *flips;
     size_t flips_count;
@@ -173,41 +173,41 @@ static double slowdown_in(const struct book *book, const struct group *group, co
     return fastest > 0 && isfinite(fastest) ? seconds_of(row) / fastest : NAN;
 }
 
-static struct tally tally_series(struct arena *arena, const struct book *book, size_t series)
+static struct standing standing_of(struct arena *arena, const struct book *book, size_t series)
 {
-    struct tally tally = {.slowdowns = ARENA_ARRAY(arena, double, book->rows_count),
-                          .flips = ARENA_ARRAY(arena, double, book->rows_count)};
+    struct standing standing = {.slowdowns = ARENA_ARRAY(arena, double, book->rows_count),
+                                .flips = ARENA_ARRAY(arena, double, book->rows_count)};
     for (size_t i = 0; i < book->rows_count; i++) {
         const struct row *row = &book->rows[i];
         if (row->series != series || row->is_floor)
             continue;
-        tally.example = row;
-        tally.groups++;
-        tally.on_front += row->summary->on_front;
+        standing.example = row;
+        standing.groups++;
+        standing.on_front += row->summary->on_front;
         double slowdown = slowdown_in(book, &book->groups[row->group], row);
         if (!isnan(slowdown))
-            tally.slowdowns[tally.succeeded++] = slowdown;
+            standing.slowdowns[standing.succeeded++] = slowdown;
         if (row->compared)
-            tally.flips[tally.flips_count++] = flip_of(row);
+            standing.flips[standing.flips_count++] = flip_of(row);
     }
-    return tally;
+    return standing;
 }
 
-static void put_tally(const struct book *book, const struct tally *tally, FILE *out)
+static void put_standing(const struct book *book, const struct standing *standing, FILE *out)
 {
     fputs("<tr><th scope=\"row\">", out);
-    put_method(book, tally->example, out);
-    double slowdown = stats_geometric_mean(tally->slowdowns, tally->succeeded);
+    put_method(book, standing->example, out);
+    double slowdown = stats_geometric_mean(standing->slowdowns, standing->succeeded);
     fprintf(out, "</th><td class=\"n\">%s</td><td class=\"n\">",
             slowdown == 1 ? "1.00" : number_plain(slowdown, 3).text);
-    size_t n = tally->flips_count;
-    fputs(number_plain(stats_median(tally->flips, n), 3).text, out);
+    size_t n = standing->flips_count;
+    fputs(number_plain(stats_median(standing->flips, n), 3).text, out);
     if (n > 1)
         fprintf(out, " <span class=\"soft\">(%s to %s)</span>",
-                number_plain(stats_quantile(tally->flips, n, 0), 2).text,
-                number_plain(stats_quantile(tally->flips, n, 1), 2).text);
+                number_plain(stats_quantile(standing->flips, n, 0), 2).text,
+                number_plain(stats_quantile(standing->flips, n, 1), 2).text);
     fprintf(out, "</td><td class=\"n\">%zu of %zu</td><td class=\"n\">%zu of %zu</td></tr>\n",
-            tally->on_front, tally->groups, tally->succeeded, tally->groups);
+            standing->on_front, standing->groups, standing->succeeded, standing->groups);
 }
 
 void answer_overall(const struct book *book, FILE *out)
@@ -220,9 +220,9 @@ void answer_overall(const struct book *book, FILE *out)
           out);
     for (size_t s = 0; s < book->series_count && s < SERIES_MAX; s++) {
         struct arena *scratch = arena_create(0);
-        struct tally tally = tally_series(scratch, book, s);
-        if (tally.example)
-            put_tally(book, &tally, out);
+        struct standing standing = standing_of(scratch, book, s);
+        if (standing.example)
+            put_standing(book, &standing, out);
         arena_destroy(scratch);
     }
     fputs("</tbody></table></div>\n<p class=\"soft\">Times are ratios to the fastest method of the "

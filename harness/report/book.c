@@ -108,6 +108,11 @@ static void fill_rates(struct row *row)
     if (!(seconds > 0))
         return;
     row->values[COLUMN_trees_per_second] = (double)row->trees / seconds;
+    double rays = row->values[COLUMN_rays], occlusion = row->values[COLUMN_occlusion_rays];
+    row->values[COLUMN_rays_per_second] = isnan(rays)        ? occlusion / seconds
+                                          : isnan(occlusion) ? rays / seconds
+                                                             : (rays + occlusion) / seconds;
+    row->values[COLUMN_lookups_per_second] = row->values[COLUMN_lookups] / seconds;
     row->values[COLUMN_triangles_per_second] = row->values[COLUMN_triangles] / seconds;
     row->values[COLUMN_fragments_per_second] = row->values[COLUMN_fragments] / seconds;
 }

@@ -16,6 +16,8 @@
     X(frame_seconds_high, "s", 0, "upper end of its 95 % interval (below 3 repetitions: largest)") \
     X(fps, "1/s", +1, "1 / frame_seconds")                                                         \
     X(trees_per_second, "1/s", +1, "trees of the scene / frame_seconds")                           \
+    X(rays_per_second, "1/s", +1, "rays of both kinds / frame_seconds")                            \
+    X(lookups_per_second, "1/s", +1, "lookups / frame_seconds")                                    \
     X(triangles_per_second, "1/s", +1, "triangles submitted / frame_seconds")                      \
     X(fragments_per_second, "1/s", +1, "fragments / frame_seconds")                                \
     X(limit_fraction, "", +1, "of the machine's limit that the cell reaches (results/README.md)")  \

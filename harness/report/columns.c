@@ -45,6 +45,8 @@ const struct shown shown_table[] = {
     {COLUMN_trees_per_second, "trees", "1/s", 1},
     {COLUMN_triangles_per_second, "triangles", "M/s", 1e-6},
     {COLUMN_fragments_per_second, "fragments", "Mpx/s", 1e-6},
+    {COLUMN_rays_per_second, "rays", "M/s", 1e-6},
+    {COLUMN_lookups_per_second, "lookups", "M/s", 1e-6},
 };
 const size_t shown_count = sizeof shown_table / sizeof *shown_table;
 

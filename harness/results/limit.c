@@ -22,8 +22,11 @@ const struct calibration *limit_calibration(const struct run *run, const struct 
     double nearest = INFINITY;
     for (size_t i = 0; i < run->calibrations_count; i++) {
         const struct calibration *one = &run->calibrations[i];
-        if (one->format != result->cell.format || one->threads != result->threads ||
-            !result->renderer || strcmp(one->renderer, result->renderer) != 0)
+        if (one->threads != result->threads || !result->renderer)
+            continue;
+        bool without_gl = strcmp(result->renderer, "cpu") == 0;
+        if (!without_gl &&
+            (one->format != result->cell.format || strcmp(one->renderer, result->renderer) != 0))
             continue;
         double pixels = (double)result->cell.width_px * result->cell.height_px;
         double away = fabs(log((double)one->width_px * one->height_px / pixels));
@@ -109,6 +112,27 @@ static struct interval least_seconds(double count, struct interval rate)
     return (struct interval){count / rate.high, count / rate.high, count / rate.value};
 }
 
+/* The sum of two least times, of which one may not be known. */
+static struct interval seconds_add(struct interval a, struct interval b)
+{
+    if (isnan(a.value) || isnan(b.value))
+        return isnan(a.value) ? b : a;
+    return (struct interval){a.value + b.value, a.low + b.low, a.high + b.high};
+}
+
+static struct interval fastest_memory(const struct calibration *calibration)
+{
+    static const enum calibration_index ways[] = {CALIBRATION_memory_read, CALIBRATION_memory_copy,
+                                                  CALIBRATION_memory_triad};
+    struct interval best = nothing;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        struct interval rate = calibration->measures[ways[i]].rate;
+        if (rate.low > 0 && !(rate.high <= best.high))
+            best = rate;
+    }
+    return best;
+}
+
 static void bind(struct limit *limit, enum limit_resource resource, struct interval seconds)
 {
     limit->bounds[resource] = seconds.value;
@@ -116,6 +140,23 @@ static void bind(struct limit *limit, enum limit_resource resource, struct inter
         return;
     limit->resource = resource;
     limit->seconds = seconds;
+}
+
+/* What a method without OpenGL counts itself, and the memory that every picture takes. */
+static void bind_cpu(struct limit *limit, const struct calibration *calibration,
+                     const struct result *result, double frame_seconds)
+{
+    const struct calibration_measure *measures = calibration->measures;
+    bind(
+        limit, LIMIT_RAYS,
+        seconds_add(least_seconds(result->rays, measures[CALIBRATION_rays_primary].rate),
+                    least_seconds(result->occlusion_rays, measures[CALIBRATION_rays_shadow].rate)));
+    bind(limit, LIMIT_LOOKUPS,
+         least_seconds(result->lookups, measures[CALIBRATION_lookups_near].rate));
+    struct interval memory = least_seconds(result->moved_bytes, fastest_memory(calibration));
+    limit->cached = memory.value > frame_seconds;
+    if (!limit->cached)
+        bind(limit, LIMIT_MEMORY, memory);
 }
 
 struct limit limit_of(const struct calibration *calibration, const struct result *result,
@@ -143,6 +184,7 @@ struct limit limit_of(const struct calibration *calibration, const struct result
     bind(&limit, LIMIT_TRIANGLES, triangles);
     bind(&limit, LIMIT_FILL,
          least_seconds(result->fragments, measures[CALIBRATION_fill_opaque].rate));
+    bind_cpu(&limit, calibration, result, frame_seconds.value);
     if (frame_seconds.value > 0)
         limit.fraction = (struct interval){limit.seconds.value / frame_seconds.value,
                                            limit.seconds.low / frame_seconds.high,

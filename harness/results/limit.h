@@ -12,7 +12,10 @@
     X(LIMIT_CALLS, "draw calls", "draw calls / calls_bare")                                        \
     X(LIMIT_VERTICES, "vertices", "vertices / vertices")                                           \
     X(LIMIT_TRIANGLES, "triangles", "primitives / rate of triangles of their mean size")           \
-    X(LIMIT_FILL, "fill", "fragments / fill_opaque")
+    X(LIMIT_FILL, "fill", "fragments / fill_opaque")                                               \
+    X(LIMIT_RAYS, "rays", "rays / rays_primary + occlusion rays / rays_shadow")                    \
+    X(LIMIT_LOOKUPS, "lookups", "lookups / lookups_near")                                          \
+    X(LIMIT_MEMORY, "memory", "bytes moved / the fastest of memory_read, _copy and _triad")
 
 enum limit_resource {
 #define LIMIT_ENUM(name, word, doc) name,
@@ -31,12 +34,14 @@ struct limit {
     struct interval fraction;      /* of the limit that is reached: seconds / frame time */
     double bounds[LIMIT_COUNT];    /* least time by each resource, s; NaN: not counted */
     double fragments_per_triangle; /* beyond one fragment a pixel, which the backdrop takes */
-    bool mixed; /* the frame took less time than triangles of one size would have, so it mixes
-                   sizes; triangles then count by the rate of culled ones */
+    bool cached; /* the frame took less time than its bytes would have from memory, so it found
+                    some in caches; memory then bounds nothing */
+    bool mixed;  /* the frame took less time than triangles of one size would have, so it mixes
+                    sizes; triangles then count by the rate of culled ones */
 };
 
-/* The calibration of the run that fits the result: same target format, threads and renderer; of
- * several the nearest size. NULL: there is none. */
+/* The calibration of the run that fits the result: same threads; of what OpenGL drew also the same
+ * target format and renderer, and of several the nearest size. NULL: there is none. */
 const struct calibration *limit_calibration(const struct run *run, const struct result *result);
 
 /* Least times by the counts of the result (of a repetition that drew all pictures) over the rates

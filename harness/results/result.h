@@ -8,8 +8,9 @@
 #include "plan/plan.h"
 #include "truth/metrics.h"
 
-/* Version 2 added the calibration. A run of version 1 is read as one that has none. */
-#define RESULT_VERSION 2
+/* Version 2 added the calibration; a run of version 1 is read as one that has none. Version 3 added
+ * the method's own counts. */
+#define RESULT_VERSION 3
 #define RESULT_VERSION_OLDEST 1
 
 /* Scalar columns, one table for JSON keys, report columns and docs. X(field, unit, better, doc).
@@ -34,6 +35,10 @@
     X(vertices, "", 0, "vertices processed a frame (pipeline statistics)")                         \
     X(primitives, "", 0, "primitives after clipping a frame (pipeline statistics)")                \
     X(fragments, "", 0, "fragments shaded a frame (pipeline statistics)")                          \
+    X(rays, "", 0, "rays to the nearest triangle a frame (the method's count)")                    \
+    X(occlusion_rays, "", 0, "rays to any triangle a frame (the method's count)")                  \
+    X(lookups, "", 0, "voxels and texels that the CPU looked up a frame (the method's count)")     \
+    X(moved_bytes, "B", 0, "a frame's least memory traffic: its picture, what the method counted") \
     X(load_average, "", -1, "1-minute load of the machine at the start")
 
 /* One compared picture. */
