@@ -256,8 +256,7 @@ static void encode_light(struct bake *bake)
     }
 }
 
-/* Largest colour that any sample can have, so that a byte's steps are not wasted. */
-static float brightest(const struct mesh *mesh)
+float atlas_brightest(const struct mesh *mesh)
 {
     float color = 0, most = 0;
     for (size_t i = 0; mesh->colors && i < 3 * mesh->vertices_count; i++)
@@ -335,7 +334,7 @@ enum status atlas_bake(struct workspace *workspace, struct arena *arena, const s
     struct arena *scratch = arena_create(0);
     struct bake bake = {.plant = plant, .two_sided = two_sided};
     place_views(arena, scratch, mesh, request, plant);
-    plant->albedo_scale = brightest(mesh);
+    plant->albedo_scale = atlas_brightest(mesh);
     size_t pixels = (size_t)plant->width_px * (size_t)plant->height_px;
     plant->albedo = arena_alloc(arena, plant->views_count * pixels, sizeof *plant->albedo);
     plant->channels = arena_alloc(arena, plant->views_count * pixels, sizeof *plant->channels);

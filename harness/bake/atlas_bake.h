@@ -22,6 +22,10 @@ enum status atlas_bake(struct workspace *workspace, struct arena *arena, const s
                        const struct atlas_request *request, bool two_sided,
                        struct atlas_plant *plant);
 
+/* Largest colour that any sample can have, so that a byte's steps are not wasted; 1 where all is
+ * black. */
+float atlas_brightest(const struct mesh *mesh);
+
 /* One level of one picture as floats: count texels of straight or premultiplied colour, coverage,
  * light channels and depth, 9 floats each. */
 enum { TEXEL_FLOATS = 9 };

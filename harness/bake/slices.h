@@ -100,8 +100,8 @@ const struct slices *slices_fused(struct arena *arena, const struct slices *slic
 void slices_encode(const float *texels, size_t count, bool straight, bool unit, uint8_t (*color)[4],
                    uint8_t (*normal)[4]);
 /* Gives empty texels (coverage 0) within `rings` texels of covered ones straight colour and normal:
- * ring by ring the mean of those of the 8 neighbours that have one, normals with the length of the
- * neighbours' mean (a zero sum stays 0); coverage stays 0. Where coverage is 1/255 or more nothing
+ * ring by ring the mean of those of the 8 neighbours that have one, normals with the neighbours'
+ * mean length (a zero sum gives 0); coverage stays 0. Where coverage is 1/255 or more nothing
  * changes. normal may be NULL. */
 void slices_dilate(uint8_t (*color)[4], uint8_t (*normal)[4], int width_px, int height_px,
                    int rings);
