@@ -128,6 +128,39 @@ static void test_cell__a_method_s_own_counts_are_those_of_a_picture(void **state
     arena_destroy(arena);
 }
 
+static size_t lines_with(const char *path, const char *text)
+{
+    char *bytes;
+    size_t size, count = 0;
+    struct error error = {0};
+    struct arena *arena = arena_create(0);
+    if (file_read(arena, path, 0, &bytes, &size, &error))
+        fail_msg("%s", error.text);
+    for (const char *at = bytes; (at = strstr(at, text)); at++)
+        count++;
+    arena_destroy(arena);
+    return count;
+}
+
+static void test_calibrate__each_round_has_its_own_and_only_once(void **state)
+{
+    const char *folder = *state;
+    struct arena *arena = arena_create(0);
+    struct plan *plan = plan_of(
+        arena, arena_printf(arena, "tiny/%s/trees=1/size=128x128", plugin(arena, "honest-cpu")));
+    struct error error = {0};
+    struct provenance provenance = {.cores = 2};
+    assert_int_equal(run_open(folder, &provenance, false, &error), STATUS_OK);
+    const int rounds[] = {0, 3, 3, 0};
+    for (size_t i = 0; i < 4; i++)
+        if (cell_calibrate(arena, plan, folder, rounds[i], 0.01, &error))
+            fail_msg("%s", error.text);
+    const char *path = arena_printf(arena, "%s/cells.jsonl", folder);
+    assert_int_equal(lines_with(path, "\"kind\":\"treeline-calibration\""), 2);
+    assert_int_equal(lines_with(path, "\"round\":3,"), 1);
+    arena_destroy(arena);
+}
+
 static void test_cell__later_repetitions_draw_the_same_bytes(void **state)
 {
     const char *folder = *state;
@@ -388,6 +421,7 @@ int main(void)
         cmocka_unit_test(test_process__takes_more_than_a_pipe_holds),
         cmocka_unit_test_in_folder(test_cell__a_good_one_fills_what_it_measured),
         cmocka_unit_test_in_folder(test_cell__a_method_s_own_counts_are_those_of_a_picture),
+        cmocka_unit_test_in_folder(test_calibrate__each_round_has_its_own_and_only_once),
         cmocka_unit_test_in_folder(test_cell__later_repetitions_draw_the_same_bytes),
         cmocka_unit_test_in_folder(test_cell__without_references_it_runs_uncompared),
         cmocka_unit_test_in_folder(test_cell__every_bad_end_has_its_status),

@@ -215,6 +215,102 @@ static void test_limit__is_told_by_a_calibration_of_the_same_kind(void **state)
     assert_null(limit_calibration(&run, &result));
 }
 
+/* Rates of the machine at so many times its best; and one repetition of 20,000 calls in a frame. */
+struct round {
+    int number;
+    double speed, frame_seconds;
+};
+
+/* A run with a calibration in each round, and what its cell reaches. */
+static struct limit limit_over(const struct round *rounds, size_t count, double cell_seconds)
+{
+    struct calibration measured[8];
+    struct result results[8];
+    const struct result *repetitions[8];
+    struct cell cell = {.width_px = 800, .height_px = 600, .format = TARGET_RGBA8};
+    double seconds[8];
+    struct run run = {.measured = measured};
+    for (size_t i = 0; i < count; i++) {
+        measured[i] = round_machine();
+        measured[i].round = rounds[i].number;
+        for (size_t k = 0; k < CALIBRATION_COUNT; k++) {
+            struct interval *rate = &measured[i].measures[k].rate;
+            rate->value = rate->low = rate->high = rate->high * rounds[i].speed;
+        }
+        run.measured_count += rounds[i].speed > 0;
+        result_init(&results[i], &cell, (int)i);
+        results[i].threads = 2;
+        results[i].renderer = "round";
+        results[i].draw_calls = 20000;
+        results[i].frames_count = 1;
+        results[i].frame_seconds = &seconds[i];
+        seconds[i] = rounds[i].frame_seconds;
+        repetitions[i] = &results[i];
+    }
+    struct arena *arena = arena_create(0);
+    calibrations_merge(arena, &run);
+    struct limit limit = limit_of_cell(&run, repetitions, count, results,
+                                       (struct interval){cell_seconds, cell_seconds, cell_seconds});
+    arena_destroy(arena);
+    return limit;
+}
+
+/* 10 ms at 2 M calls a second, of 40 ms; in the second and third round all takes thrice as long. */
+static void test_limit__a_machine_that_drifts_leaves_the_fraction_alone(void **state)
+{
+    (void)state;
+    const struct round drifting[] = {
+        {0, 1, 0.04}, {1, 1.0 / 3, 0.12}, {2, 1.0 / 3, 0.12}, {3, 1, 0.04}, {4, 1, 0.04}};
+    struct limit limit = limit_over(drifting, 5, 0.04);
+    assert_int_equal(limit.resource, LIMIT_CALLS);
+    check_near(limit.fraction.value, 0.25, 1e-12);
+    check_near(limit.fraction.low, 0.25, 1e-12);
+    check_near(limit.fraction.high, 0.25, 1e-12);
+}
+
+static void test_limit__a_round_without_calibration_takes_the_last_one_before_it(void **state)
+{
+    (void)state;
+    /* Two calibrations, before rounds 0 and 2: repetitions 0 and 1 belong to the first. */
+    const struct round rounds[] = {{0, 1, 0.04}, {2, 0.5, 0.04}, {9, 0, 0.08}, {9, 0, 0.08}};
+    check_near(limit_over(rounds, 4, 0.08).fraction.value, 0.125 + 0.125, 1e-12);
+    check_near(limit_over(rounds, 2, 0.04).fraction.value, 0.25, 1e-12);
+    check_near(limit_over(rounds, 2, 0.04).fraction.high, 0.25, 1e-12); /* by the median rate */
+    /* All that is known came later. */
+    const struct round late[] = {{7, 0.5, 0.04}};
+    check_near(limit_over(late, 1, 0.04).fraction.value, 0.5, 1e-12);
+}
+
+static void test_calibration__rounds_merge_into_medians_of_each_kind(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct calibration measured[6];
+    struct run run = {.measured = measured, .measured_count = 6};
+    for (int i = 0; i < 6; i++) {
+        measured[i] = round_machine();
+        measured[i].round = i;
+        measured[i].format = i == 3 ? TARGET_RGBA16F : TARGET_RGBA8;
+        measured[i].measures[CALIBRATION_fill_opaque].rate.value = 100.0 * (i * 7 % 6);
+    }
+    calibrations_merge(arena, &run);
+    assert_int_equal(run.calibrations_count, 2);
+    const struct calibration *merged = run.calibrations;
+    struct interval rate = merged->measures[CALIBRATION_fill_opaque].rate;
+    /* 0, 100, 200, 400, 500 are left of the rgba8 ones. */
+    check_near(rate.value, 200, 1e-9);
+    assert_true(rate.low >= 0 && rate.low < 200 && rate.high > 200 && rate.high <= 500);
+    check_near(merged->seconds, 5 * 3.5, 1e-9);
+    check_near(merged->measures[CALIBRATION_quads_2px].fragments_per_triangle, 16, 0);
+    assert_true(isnan(merged->measures[CALIBRATION_rays_ambient].rate.value));
+    /* A single one is as it was. */
+    rate = run.calibrations[1].measures[CALIBRATION_quads_2px].rate;
+    check_near(rate.low, 1e6, 0);
+    check_near(rate.value, 2e6, 0);
+    check_near(rate.high, 4e6, 0);
+    arena_destroy(arena);
+}
+
 static void check_same(double a, double b)
 {
     if (a != b && !(isnan(a) && isnan(b)))
@@ -228,10 +324,12 @@ static void test_calibration__a_line_reads_back_to_the_same_values(void **state)
     struct error error = {0};
     struct calibration before = round_machine(), after;
     before.measures[0].rate.value = 1e9 / 3;
+    before.round = 3;
     char *line = calibration_to_json(arena, &before);
     assert_null(strchr(line, '\n'));
     if (calibration_from_json(arena, line, "here:1", &after, &error))
         fail_msg("%s", error.text);
+    assert_int_equal(after.round, 3);
     assert_int_equal(after.width_px, 800);
     assert_int_equal(after.height_px, 600);
     assert_int_equal(after.format, TARGET_RGBA8);
@@ -272,6 +370,7 @@ static void test_calibration__a_malformed_line_names_key_and_value(void **state)
     check_refused(CALIBRATION_KIND, "treeline-run", CALIBRATION_KIND);
     check_refused("\"rgba8\"", "\"rgb\"", "rgba8|rgba16f|rgba32f");
     check_refused("\"threads\":2", "\"threads\":0", "threads");
+    check_refused("\"round\":0", "\"round\":-1", "round");
     check_refused("\"width_px\":800", "\"width_px\":-1", "width_px");
     check_refused("\"rate\":250000000", "\"rate\":-5", "rate");
     check_refused("\"fill_opaque\"", "\"fill_purple\"", "fill_purple");
@@ -429,6 +528,9 @@ int main(void)
         cmocka_unit_test(test_limit__a_cell_without_opengl_is_bound_by_what_it_counted),
         cmocka_unit_test(test_limit__a_frame_faster_than_its_bytes_found_them_in_caches),
         cmocka_unit_test(test_limit__is_told_by_a_calibration_of_the_same_kind),
+        cmocka_unit_test(test_limit__a_machine_that_drifts_leaves_the_fraction_alone),
+        cmocka_unit_test(test_limit__a_round_without_calibration_takes_the_last_one_before_it),
+        cmocka_unit_test(test_calibration__rounds_merge_into_medians_of_each_kind),
         cmocka_unit_test(test_calibration__a_line_reads_back_to_the_same_values),
         cmocka_unit_test(test_calibration__a_malformed_line_names_key_and_value),
         cmocka_unit_test(test_run__of_version_1_is_read_as_one_without_calibration),

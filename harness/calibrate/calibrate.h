@@ -71,6 +71,7 @@ struct calibration {
     int width_px, height_px; /* of the picture it was measured on */
     enum target_format format;
     int threads;
+    int round;       /* of repetitions before which it was made; 0 outside of a run */
     double core_ghz; /* nominal; NaN: not known */
     double seconds;  /* that it took */
     const char *backend, *renderer;

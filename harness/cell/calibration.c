@@ -1,4 +1,5 @@
-/* The calibration of a run: in a child process, once for each target format of its cells. */
+/* The calibration of a run: in a child process before a round, once for each target format of its
+ * cells. */
 #include "cell/cell.h"
 
 #include "cell/process.h"
@@ -25,7 +26,7 @@ static enum status calibration_work(void *context, int out)
 
 /* Measures and keeps one; what fails is told, and the run goes on without. */
 static enum status calibration_do(struct arena *arena, struct calibrate_request *request,
-                                  const char *folder, struct error *error)
+                                  const char *folder, int round, struct error *error)
 {
     struct process_request process = {
         .work = calibration_work, .context = request, .timeout_seconds = 60 + 4 * request->seconds};
@@ -41,6 +42,7 @@ static enum status calibration_do(struct arena *arena, struct calibrate_request 
         status =
             calibration_from_json(arena, line, "the calibration's process", &calibration, &why);
     }
+    calibration.round = round;
     if (!status && line && *line && !outcome.signal && !outcome.exit_code)
         return run_append_calibration(folder, &calibration, error);
     fprintf(stderr, "treeline: the machine was not calibrated for %s, no limits are told: %s\n",
@@ -85,7 +87,7 @@ static bool largest_picture(const struct plan *plan, enum target_format format,
 }
 
 enum status cell_calibrate(struct arena *arena, const struct plan *plan, const char *folder,
-                           double seconds, struct error *error)
+                           int round, double seconds, struct error *error)
 {
     struct run *run;
     enum status status = run_read(arena, folder, &run, error);
@@ -98,13 +100,14 @@ enum status cell_calibrate(struct arena *arena, const struct plan *plan, const c
         if (!largest_picture(plan, request.format, &request))
             continue;
         request = calibrate_held(&request);
-        for (size_t i = 0; i < run->calibrations_count; i++) {
-            const struct calibration *one = &run->calibrations[i];
-            kept |= one->format == request.format && one->threads == request.threads &&
-                    one->width_px == request.width_px && one->height_px == request.height_px;
+        for (size_t i = 0; i < run->measured_count; i++) {
+            const struct calibration *one = &run->measured[i];
+            kept |= one->round == round && one->format == request.format &&
+                    one->threads == request.threads && one->width_px == request.width_px &&
+                    one->height_px == request.height_px;
         }
         if (!kept)
-            status = calibration_do(arena, &request, folder, error);
+            status = calibration_do(arena, &request, folder, round, error);
     }
     return status;
 }

@@ -36,12 +36,11 @@ enum status cell_render_views(const struct cell *cell, const struct view *views,
 enum status cell_references(struct arena *arena, const struct plan *plan, const char *folder,
                             bool quiet, struct error *error);
 
-/* Before the references: what this machine can do at most, in a child process, for each target
- * format that a GL cell of the plan has (where none has, for the first cell's), at its largest
- * picture, added to FOLDER/cells.jsonl unless
- * it is there. One that fails is told on stderr. seconds: of measuring, each.
- * STATUS_INTERRUPTED when stopped. */
+/* Before a round: what this machine can do at most, in a child process, for each target format that
+ * a GL cell of the plan has (where none has, for the first cell's), at its largest picture, added
+ * to FOLDER/cells.jsonl unless this round's is there. One that fails is told on stderr. seconds: of
+ * measuring, each. STATUS_INTERRUPTED when stopped. */
 enum status cell_calibrate(struct arena *arena, const struct plan *plan, const char *folder,
-                           double seconds, struct error *error);
+                           int round, double seconds, struct error *error);
 
 #endif

@@ -136,23 +136,65 @@ static enum status repetition_do(struct rounds *rounds, const struct cell *cell,
     return status;
 }
 
-/* A twentieth of the measuring, within bounds. */
-static double calibration_seconds(const struct rounds *rounds)
+/* What a calibration takes beside its measuring, and the least that it measures. */
+static const double calibration_setup_seconds = 0.5, calibration_least_seconds = 0.2;
+
+/* The machine drifts, so calibrations are spread over the rounds: as many as a twentieth of the
+ * plan's measuring, at most CALIBRATE_SECONDS, has room for. */
+static int calibrations_count(const struct plan *plan, double *seconds)
 {
-    double share = 0.05 * (double)rounds->count * repetition_guess_seconds(rounds->plan);
-    return fmin(fmax(share, 0.3), CALIBRATE_SECONDS);
+    double share = 0.05 * (double)plan->cells_count * plan->rounds * repetition_guess_seconds(plan);
+    double all = fmin(share, CALIBRATE_SECONDS);
+    double room = floor(all / (calibration_setup_seconds + calibration_least_seconds));
+    double count = fmin(fmax(room, 1), plan->rounds);
+    *seconds = fmax(all / count - calibration_setup_seconds, calibration_least_seconds);
+    return (int)count;
+}
+
+/* The first round and others evenly spaced. */
+static enum status round_calibrate(struct arena *arena, const struct rounds *rounds, int round,
+                                   struct error *error)
+{
+    const struct plan *plan = rounds->plan;
+    double seconds;
+    int64_t count = calibrations_count(plan, &seconds);
+    if (rounds->request->no_calibrate ||
+        (round && round * count / plan->rounds == (round - 1) * count / plan->rounds))
+        return STATUS_OK;
+    progress_update(rounds->progress, (double)rounds->finished, "what this machine can do at most");
+    return cell_calibrate(arena, plan, rounds->folder, round, seconds, error);
+}
+
+/* Repetitions of the round that are not told yet. */
+static size_t round_left(const struct rounds *rounds, int round)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < rounds->plan->cells_count; i++) {
+        uint64_t hash = repetition_hash(rounds->plan->cells[i].name, round);
+        left += *done_slot(&rounds->done, hash) != hash;
+    }
+    return left;
+}
+
+static enum status round_do(struct arena *arena, struct rounds *rounds, int round, size_t *order,
+                            struct error *error)
+{
+    const struct plan *plan = rounds->plan;
+    if (!round_left(rounds, round))
+        return STATUS_OK;
+    enum status status = round_calibrate(arena, rounds, round, error);
+    plan_order(plan, round, order);
+    for (size_t i = 0; i < plan->cells_count && !status; i++)
+        status = repetition_do(rounds, &plan->cells[order[i]], round, error);
+    return status;
 }
 
 static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct error *error)
 {
     const struct plan *plan = rounds->plan;
     size_t *order = ARENA_ARRAY(arena, size_t, plan->cells_count);
-    enum status status = STATUS_OK;
     for (int round = 0; round < plan->rounds; round++)
-        for (size_t i = 0; i < plan->cells_count; i++) {
-            uint64_t hash = repetition_hash(plan->cells[i].name, round);
-            rounds->count += *done_slot(&rounds->done, hash) != hash;
-        }
+        rounds->count += round_left(rounds, round);
     if (!rounds->request->quiet)
         fprintf(stderr,
                 "treeline: %zu repetition%s of %zu cell%s into %s, about %.0f s of measuring\n",
@@ -160,20 +202,13 @@ static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct 
                 rounds->folder, (double)rounds->count * repetition_guess_seconds(plan));
     if (!rounds->count)
         return STATUS_OK;
-    if (!rounds->request->no_calibrate && !rounds->request->quiet)
-        fprintf(stderr, "treeline: measuring what this machine can do at most\n");
-    if (!rounds->request->no_calibrate)
-        status = cell_calibrate(arena, plan, rounds->folder, calibration_seconds(rounds), error);
-    if (!status)
-        status = cell_references(arena, plan, rounds->folder, rounds->request->quiet, error);
+    enum status status =
+        cell_references(arena, plan, rounds->folder, rounds->request->quiet, error);
     if (status)
         return status;
     rounds->progress = progress_start("cells", (double)rounds->count, rounds->request->quiet);
-    for (int round = 0; round < plan->rounds && !status; round++) {
-        plan_order(plan, round, order);
-        for (size_t i = 0; i < plan->cells_count && !status; i++)
-            status = repetition_do(rounds, &plan->cells[order[i]], round, error);
-    }
+    for (int round = 0; round < plan->rounds && !status; round++)
+        status = round_do(arena, rounds, round, order, error);
     progress_end(rounds->progress);
     return status;
 }

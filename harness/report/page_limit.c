@@ -45,11 +45,13 @@ void page_limit(const struct page *page)
         return;
     page_text(
         page,
-        "<h2 id=\"limit\">How near the machine's limit</h2>\n<p>The run measured what this machine "
-        "can do at most. Counts of a cell's draw calls, vertices, triangles and fragments over "
+        "<h2 id=\"limit\">How near the machine's limit</h2>\n<p>Between its rounds the run "
+        "measured "
+        "what this machine can do at most. Counts of a cell's draw calls, vertices, triangles and "
+        "fragments, and of the rays, lookups and bytes that a method without OpenGL tells, over "
         "these rates give the least time of its frame; the largest bounds it, and its share of "
         "the measured time is the fraction of the limit that the cell reaches: the column "
-        "<i>of limit</i> of the results. The rest is shading, textures, and work of the "
+        "<i>of limit</i> of the results. The rest is shading, textures, and other work of the "
         "CPU.</p>\n");
     page_figures(page, FIGURE_ROOFLINE, FIGURE_ROOFLINE);
     for (size_t i = 0; i < run->calibrations_count; i++)

@@ -43,6 +43,8 @@ static const struct result *best_of(const struct result *known, const struct res
 
 static void summarise_time(struct arena *arena, const struct run *run, struct summary *summary)
 {
+    const struct result **succeeded =
+        ARENA_ARRAY(arena, const struct result *, summary->repetitions + 1);
     const double **times = ARENA_ARRAY(arena, const double *, summary->repetitions + 1);
     size_t *counts = ARENA_ARRAY(arena, size_t, summary->repetitions + 1);
     size_t kept = 0;
@@ -50,6 +52,7 @@ static void summarise_time(struct arena *arena, const struct run *run, struct su
         const struct result *result = summary->results[i];
         if (result->status != STATUS_OK)
             continue;
+        succeeded[kept] = result;
         times[kept] = result->frame_seconds;
         counts[kept++] = result->frames_count;
     }
@@ -58,7 +61,7 @@ static void summarise_time(struct arena *arena, const struct run *run, struct su
     summary->frame_seconds.value = interval.value;
     summary->frame_seconds.low = interval.low;
     summary->frame_seconds.high = interval.high;
-    summary->limit = limit_of(limit_calibration(run, summary->first), summary->first, interval);
+    summary->limit = limit_of_cell(run, succeeded, kept, summary->first, interval);
 }
 
 static int compare_groups(const void *a, const void *b)

@@ -14,6 +14,7 @@ char *calibration_to_json(struct arena *arena, const struct calibration *calibra
     json_open(out, NULL, '{');
     json_put_number(out, "version", RESULT_VERSION);
     json_put_text(out, "kind", CALIBRATION_KIND);
+    json_put_number(out, "round", calibration->round);
     json_put_number(out, "width_px", calibration->width_px);
     json_put_number(out, "height_px", calibration->height_px);
     json_put_text(out, "target", target_format_word(calibration->format));
@@ -56,6 +57,7 @@ enum status calibration_from_json(struct arena *arena, const char *text, const c
     const char *kind = json_text(root, "kind", "");
     if (strcmp(kind, CALIBRATION_KIND) != 0)
         json_fail(root, "kind", "value is '%s'; allowed: " CALIBRATION_KIND, kind);
+    calibration->round = (int)json_integer(root, "round", 0, 0, INT32_MAX);
     calibration->width_px = (int)json_integer(root, "width_px", 0, 1, 1 << 20);
     calibration->height_px = (int)json_integer(root, "height_px", 0, 1, 1 << 20);
     const char *target = json_text(root, "target", "");

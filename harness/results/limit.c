@@ -1,6 +1,8 @@
 /* From counts and calibrated rates to the least time of a frame and the share of it. */
 #include "results/limit.h"
 
+#include "results/calibration.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -189,5 +191,45 @@ struct limit limit_of(const struct calibration *calibration, const struct result
         limit.fraction = (struct interval){limit.seconds.value / frame_seconds.value,
                                            limit.seconds.low / frame_seconds.high,
                                            limit.seconds.high / frame_seconds.low};
+    return limit;
+}
+
+/* The calibration of this kind that was made last before the round, else the first after it. */
+static const struct calibration *calibration_of_round(const struct run *run,
+                                                      const struct calibration *kind, int round)
+{
+    const struct calibration *best = NULL;
+    for (size_t i = 0; i < run->measured_count; i++) {
+        const struct calibration *one = &run->measured[i];
+        if (!calibration_same_kind(one, kind))
+            continue;
+        bool before = one->round <= round, best_before = best && best->round <= round;
+        if (!best || (before && (!best_before || one->round > best->round)) ||
+            (!before && !best_before && one->round < best->round))
+            best = one;
+    }
+    return best;
+}
+
+struct limit limit_of_cell(const struct run *run, const struct result *const *repetitions,
+                           size_t count, const struct result *counted,
+                           struct interval frame_seconds)
+{
+    const struct calibration *kind = limit_calibration(run, counted);
+    if (!kind || !count)
+        return limit_of(NULL, counted, frame_seconds);
+    struct arena *arena = arena_create(0);
+    struct calibration_part *parts = ARENA_ARRAY(arena, struct calibration_part, count);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        const struct result *one = repetitions[i];
+        double scale = stats_median(one->frame_seconds, one->frames_count) / frame_seconds.value;
+        if (scale > 0)
+            parts[kept++] =
+                (struct calibration_part){calibration_of_round(run, kind, one->repetition), scale};
+    }
+    struct calibration paired = kept ? calibration_merge(arena, parts, kept) : *kind;
+    struct limit limit = limit_of(&paired, counted, frame_seconds);
+    arena_destroy(arena);
     return limit;
 }

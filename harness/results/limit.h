@@ -49,6 +49,15 @@ const struct calibration *limit_calibration(const struct run *run, const struct 
 struct limit limit_of(const struct calibration *calibration, const struct result *result,
                       struct interval frame_seconds);
 
+/* The same against the machine as it was while the cell ran: each repetition is paired with the
+ * calibration of its round (or the last one before it), whose rates are scaled by the repetition's
+ * median frame time over the cell's, and then merged; so a machine that is half as fast in one
+ * round changes nothing. repetitions: count successful ones of one cell; counted: that of them
+ * which has the counts. */
+struct limit limit_of_cell(const struct run *run, const struct result *const *repetitions,
+                           size_t count, const struct result *counted,
+                           struct interval frame_seconds);
+
 /* Rate of triangles that shade so many fragments each, in 1/s, from the calibrated sizes:
  * interpolated in the logarithms of size and rate; below the smallest size in the time between it
  * and a culled one, above the largest by fill. */

@@ -9,7 +9,7 @@
 #include "truth/metrics.h"
 
 /* Version 2 added the calibration; a run of version 1 is read as one that has none. Version 3 added
- * the method's own counts. */
+ * the method's own counts and calibrations of several rounds. */
 #define RESULT_VERSION 3
 #define RESULT_VERSION_OLDEST 1
 
@@ -97,8 +97,10 @@ struct run {
     struct provenance provenance;
     size_t results_count;
     struct result *results; /* in file order */
+    size_t measured_count;
+    struct calibration *measured; /* calibrations as they were made, in file order */
     size_t calibrations_count;
-    struct calibration *calibrations; /* at most one a target format and size */
+    struct calibration *calibrations; /* the same over all rounds: one a kind */
     size_t torn_lines;                /* a last line cut by a kill is dropped and counted */
 };
 

@@ -82,14 +82,14 @@ static const char *folder_of(struct arena *arena, const char *file)
 /* Place for one more; twice as many each time. */
 static struct calibration *calibration_add(struct arena *arena, struct run *run)
 {
-    size_t count = run->calibrations_count;
+    size_t count = run->measured_count;
     if (!(count & (count - 1))) {
         struct calibration *more = ARENA_ARRAY(arena, struct calibration, count ? 2 * count : 1);
         if (count)
-            memcpy(more, run->calibrations, count * sizeof *more);
-        run->calibrations = more;
+            memcpy(more, run->measured, count * sizeof *more);
+        run->measured = more;
     }
-    return &run->calibrations[run->calibrations_count++];
+    return &run->measured[run->measured_count++];
 }
 
 /* One line behind the first: a result, or a calibration, which alone says its kind. */
@@ -143,9 +143,11 @@ enum status run_read(struct arena *arena, const char *path, struct run **run, st
     struct run *made = ARENA_NEW(arena, struct run);
     made->folder = folder_of(arena, file);
     status = lines_read(arena, file, text, size, made, error);
-    if (!status)
-        *run = made;
-    return status;
+    if (status)
+        return status;
+    calibrations_merge(arena, made);
+    *run = made;
+    return STATUS_OK;
 }
 
 /* Cuts what stands behind the last newline: a line that a kill or a full disk left half written. */
