@@ -200,6 +200,7 @@ install: all
 	install -m755 $(IMAGE_SO) $(DESTDIR)$(PREFIX)/lib/treeline/
 	cp -r scenes $(DESTDIR)$(PREFIX)/share/treeline/
 	install -Dm644 -t $(DESTDIR)$(PREFIX)/share/treeline/reports/template reports/template/*
+	install -Dm644 -t $(DESTDIR)$(PREFIX)/share/treeline/reports/papers reports/papers/*
 	for room in base bake method plant scene wall; do \
 	  install -Dm644 -t $(DESTDIR)$(PREFIX)/include/treeline/$$room harness/$$room/*.h; done
 	install -m644 $(GEN)/gl_functions.inc $(DESTDIR)$(PREFIX)/include/treeline/

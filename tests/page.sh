@@ -9,10 +9,11 @@ if [ -z "$browser" ] || ! /usr/bin/python3 -c 'import websocket' 2>/dev/null; th
   echo "0 passed, 0 failed, 1 skipped"
   exit 0
 fi
-make -s build/release-gcc/tests/test_report all || exit 1
+make -s build/release-gcc/tests/test_report build/release-gcc/tests/test_papers all || exit 1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export OMP_WAIT_POLICY=passive TREELINE_DATA="${TREELINE_DATA:-$PWD}"
 build/release-gcc/tests/test_report page "$work/run" "$work/out" || exit 1
 build/release-gcc/tests/test_report many "$work/many" "$work/many-out" || exit 1
-PYTHONDONTWRITEBYTECODE=1 timeout 170 /usr/bin/python3 tests/page_live.py "$browser" "$work/out" "$work/many-out" ${look:+"$look"}
+build/release-gcc/tests/test_papers page "$work/papers" "$work/papers-out" || exit 1
+PYTHONDONTWRITEBYTECODE=1 timeout 170 /usr/bin/python3 tests/page_live.py "$browser" "$work/out" "$work/many-out" "$work/papers-out" ${look:+"$look"}

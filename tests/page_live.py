@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""The report's page in a real browser, by clicking: page_live.py CHROMIUM OUT MANY_OUT [LOOK].
+"""The report's page in a real browser, by clicking: page_live.py CHROMIUM OUT MANY_OUT PAPERS_OUT [LOOK].
 
-OUT holds the report of the synthetic run, MANY_OUT one of ten thousand cells. What the page shows is compared with
+OUT holds the report of the synthetic run, MANY_OUT one of ten thousand cells,
+PAPERS_OUT one with cells that a paper prints. What the page shows is compared with
 OUT/tables/results.csv. Whatever the browser complains about is a failure. LOOK: a folder for
 pictures of what was seen, to look at."""
 import csv
@@ -14,13 +15,13 @@ import tempfile
 
 from page_browser import Browser
 
-program, out, many = sys.argv[1:4]
+program, out, many, papers = sys.argv[1:5]
 results = []
 
 
 def look(browser, name):
-    if len(sys.argv) > 4:
-        browser.picture(os.path.join(sys.argv[4], name + ".png"), whole=True)
+    if len(sys.argv) > 5:
+        browser.picture(os.path.join(sys.argv[5], name + ".png"), whole=True)
 
 
 def check(name, good, detail=""):
@@ -325,6 +326,37 @@ def check_many(browser, folder):
     quiet(browser, "ten thousand cells")
 
 
+def check_papers(browser, folder):
+    rows = list(csv.DictReader(open(os.path.join(folder, "tables", "papers.csv"), encoding="utf-8", newline="")))
+    page = os.path.join(folder, "index.html")
+    browser.open(page)
+    browser.settle()
+    look(browser, "papers")
+    shown = browser.run("""Array.from(document.querySelectorAll("#papers ~ .scroll > table.paper"), (table) => Array.from(table.tBodies[0].rows, (row) =>
+        Array.from(row.cells, (cell) => cell.firstChild ? cell.firstChild.textContent : "")))""")
+    claims, lines = shown[0], [line for table in shown[1:] for line in table]
+    check("the papers' tables have a line a printed row", len(lines) == len(rows) > 30, [len(lines), len(rows)])
+    near = lambda text, value: text == "\u2013" if value == "" else abs(float(text.replace(",", "")) / float(value) - 1) < 6e-3
+    check("with its ratio and ours", all(near(l[5], r["printed_ratio"]) and near(l[6], r["ratio"]) for l, r in zip(lines, rows)))
+    check("what failed or was not run is said", [l[4] for l, r in zip(lines, rows) if r["state"] != "ok"] == [r["state"] for r in rows if r["state"] != "ok"] == ["not measured", "timeout"])
+    verdicts = [word for row in claims for word in row if word in ("holds", "does not hold", "open", "not measured")]
+    check("every finding has a verdict", len(verdicts) == len(claims) and len(set(verdicts)) == 4, verdicts)
+    check("the plot of ratios stays beside the script", browser.run("document.querySelector('#papers ~ div svg.plot').getClientRects().length") == 1)
+    check("the papers are in the contents", browser.run("document.querySelectorAll('nav a[href=\"#papers\"]').length") == 1)
+    for width, scheme in ((1280, "light"), (360, "light"), (360, "dark")):
+        browser.size(width, touch=width < 500)
+        browser.media(scheme)
+        browser.open(page)
+        browser.settle()
+        look(browser, f"papers-{width}-{scheme}")
+        fits(browser, f"papers, {width} px, {scheme}")
+    browser.size(1280)
+    browser.media("light")
+    quiet(browser, "papers")
+    browser.open(os.path.join(out, "index.html"))
+    check("a run without a printed cell has no such section", browser.run("document.getElementById('papers')") is None)
+
+
 def check_alone(browser, page):
     folder = tempfile.mkdtemp()
     shutil.copy(page, os.path.join(folder, "alone.html"))
@@ -360,6 +392,7 @@ def main():
         check_without_script(browser, page, rows)
         check_alone(browser, page)
         check_many(browser, many)
+        check_papers(browser, papers)
     finally:
         browser.close()
 

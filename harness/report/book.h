@@ -118,8 +118,11 @@ struct book {
     size_t families_count;
     struct law *laws; /* a family and series, those with one point too */
     size_t laws_count;
-    bool effects_differ; /* some cell draws less than its scene asks for */
+    bool effects_differ;                /* some cell draws less than its scene asks for */
+    const struct paper_beside *besides; /* papers whose printed tables the run has cells of */
+    size_t besides_count;
 };
+struct paper_beside;
 struct book *book_make(struct arena *arena, const struct run *run);
 void book_find_laws(struct book *book); /* by book_make */
 /* The group with the most trees of its family: what overviews show. */
@@ -138,12 +141,23 @@ struct number number_exact(double value);             /* shortest that reads bac
 struct number number_seconds(double seconds);
 
 void html_put(FILE *out, const char *text);
+void html_put_mark(FILE *out, const struct book *book, size_t method_index); /* a method's symbol */
 void html_put_label(FILE *out, const struct book *book, const struct row *row); /* with symbol */
 /* Writes what an open_memstream collected; closes it and frees. */
 enum status sheet_write(FILE *sheet, char **data, const size_t *size, const char *path,
                         struct error *error);
 
+/* One file of FOLDER: its name, and who writes it. */
+struct export_table {
+    const char *name;
+    void (*write)(const struct book *book, FILE *out);
+};
+enum status export_write(const struct book *book, const char *folder,
+                         const struct export_table *tables, size_t count, struct error *error);
 enum status export_tables(const struct book *book, const char *folder, struct error *error);
+enum status export_papers(const struct book *book, const char *folder, struct error *error);
+void csv_text(FILE *out, const char *text);      /* quoted where it must be */
+void markdown_text(FILE *out, const char *text); /* escaped */
 
 /* The group to speak about first: a front of the three points that are told, then the most trees,
  * then the most cells; NULL: no group has a front. front: as of book_front, of rows_count places.
@@ -174,7 +188,8 @@ enum figure_kind {
     FIGURE_TRADE_FULL,
     FIGURE_GROWTH,
     FIGURE_DISTANCE,
-    FIGURE_ROOFLINE
+    FIGURE_ROOFLINE,
+    FIGURE_PAPER
 };
 struct figure {
     enum figure_kind kind;

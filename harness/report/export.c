@@ -19,7 +19,7 @@ enum status sheet_write(FILE *sheet, char **data, const size_t *size, const char
     return status;
 }
 
-static void csv_text(FILE *out, const char *text)
+void csv_text(FILE *out, const char *text)
 {
     bool quote = strpbrk(text, ",\"\r\n") != NULL;
     if (!quote) {
@@ -75,7 +75,7 @@ static struct number shown_number(const struct row *row, const struct shown *sho
     return value >= 1e5 ? number_short(value, 3) : number_plain(value, 3);
 }
 
-static void markdown_text(FILE *out, const char *text)
+void markdown_text(FILE *out, const char *text)
 {
     for (const char *c = text; *c; c++) {
         if (strchr("|\\`*_<>[]", *c))
@@ -178,15 +178,11 @@ static void write_latex(const struct book *book, FILE *out)
     fputs("\\bottomrule\n\\end{tabular}\n", out);
 }
 
-enum status export_tables(const struct book *book, const char *folder, struct error *error)
+enum status export_write(const struct book *book, const char *folder,
+                         const struct export_table *tables, size_t count, struct error *error)
 {
-    static const struct {
-        const char *name;
-        void (*write)(const struct book *book, FILE *out);
-    } tables[] = {
-        {"results.csv", write_csv}, {"results.md", write_markdown}, {"results.tex", write_latex}};
     enum status status = file_make_folder(folder, error);
-    for (size_t i = 0; i < sizeof tables / sizeof *tables && status == STATUS_OK; i++) {
+    for (size_t i = 0; i < count && status == STATUS_OK; i++) {
         char *text = NULL;
         size_t size = 0;
         FILE *out = open_memstream(&text, &size);
@@ -197,4 +193,12 @@ enum status export_tables(const struct book *book, const char *folder, struct er
                              arena_printf(book->arena, "%s/%s", folder, tables[i].name), error);
     }
     return status;
+}
+
+enum status export_tables(const struct book *book, const char *folder, struct error *error)
+{
+    static const struct export_table tables[] = {
+        {"results.csv", write_csv}, {"results.md", write_markdown}, {"results.tex", write_latex}};
+    enum status status = export_write(book, folder, tables, 3, error);
+    return status == STATUS_OK ? export_papers(book, folder, error) : status;
 }

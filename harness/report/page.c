@@ -112,6 +112,7 @@ static void put_facts(const struct page *page)
                     "<a href=\"#growth\">more trees</a><a href=\"#distance\">distance</a>"
                     "<a href=\"#cost\">memory and build</a>");
     page_text(page, book->run->calibrations_count ? "<a href=\"#limit\">limits</a>" : "");
+    page_text(page, book->besides_count ? "<a href=\"#papers\">beside the paper</a>" : "");
     page_text(page, "<a href=\"#pictures\">pictures</a>"
                     "<a href=\"#results\">results</a><a href=\"#failures\">failures</a>"
                     "<a href=\"#provenance\">provenance</a><a href=\"#cite\">cite</a>"
@@ -153,6 +154,7 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
         [FIGURE_DISTANCE] = "One point a view; error of the representation.",
         [FIGURE_ROOFLINE] = ("The nearer the line, the nearer the limit. Bars: 95 % intervals. A "
                              "point above it mixes large and small triangles."),
+        [FIGURE_PAPER] = ("On the line: the same ratio as printed. Bars: 95 % intervals."),
     };
     size_t shown = 0;
     for (size_t i = 0; i < page->figures->count; i++) {
@@ -161,7 +163,7 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
             continue;
         if (!shown++)
             fprintf(page->out, "<div%s><div class=\"figures\">\n",
-                    figure->kind == FIGURE_ROOFLINE ? "" : " class=\"still\"");
+                    figure->kind >= FIGURE_ROOFLINE ? "" : " class=\"still\"");
         put_figure(page, figure, captions[figure->kind]);
     }
     page_text(page, shown ? "</div></div>\n" : "");
@@ -266,6 +268,7 @@ static void put_page(const struct page *page)
     put_growth_and_distance(page);
     page_cost(page);
     page_limit(page);
+    page_papers(page);
     page_text(page, "<h2 id=\"overall\">Each method over all scenes and tree counts</h2>\n");
     answer_overall(page->book, page->out);
     put_pictures(page);

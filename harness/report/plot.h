@@ -59,6 +59,10 @@ enum status plot_distance(const struct book *book, const struct group *group, co
 /* Triangles a second against their size, and the machine's roof, of a group. */
 enum status plot_roofline(const struct book *book, const struct group *group, const char *folder,
                           struct figure *figure, struct error *error);
+/* Ratios of ours against the printed ones of a paper. */
+struct paper_beside;
+enum status plot_paper(const struct book *book, const struct paper_beside *beside,
+                       const char *folder, struct figure *figure, struct error *error);
 
 /* Runs gnuplot once over all figures and fills in their SVGs. */
 enum status plot_draw(const struct book *book, const char *folder, const struct figures *figures,

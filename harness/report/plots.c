@@ -2,6 +2,7 @@
 #include "report/plot.h"
 
 #include "base/file.h"
+#include "report/paper.h"
 
 enum { FAMILIES_MAX = 6, KINDS_COUNT = 5 };
 
@@ -35,11 +36,16 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
 enum status plots_draw(const struct book *book, const char *folder, struct figures *figures,
                        struct error *error)
 {
-    *figures = (struct figures){
-        .list = ARENA_ARRAY(book->arena, struct figure, FAMILIES_MAX * KINDS_COUNT + 1)};
+    *figures =
+        (struct figures){.list = ARENA_ARRAY(book->arena, struct figure,
+                                             FAMILIES_MAX * KINDS_COUNT + book->besides_count + 1)};
     enum status status = file_make_folder(folder, error);
     for (size_t g = 0; g < book->groups_count && status == STATUS_OK; g++)
         if (book_is_overview(book, g) && book->groups[g].family < FAMILIES_MAX)
             status = plan_group(book, g, folder, figures, error);
+    for (size_t i = 0; i < book->besides_count && status == STATUS_OK; i++) {
+        status = plot_paper(book, &book->besides[i], folder, &figures->list[figures->count], error);
+        keep(figures);
+    }
     return status == STATUS_OK ? plot_draw(book, folder, figures, error) : status;
 }

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "report/book.h"
+#include "report/paper.h"
 
 #include <string.h>
 
@@ -41,8 +42,15 @@ enum status report_write_run(struct arena *arena, const struct run *run, const c
 {
     if (run->results_count == 0)
         return error_set(error, STATUS_INVALID, "%s: holds no result yet", run->folder);
+    struct paper *papers;
+    size_t papers_count;
+    enum status status = papers_read(arena, arena_printf(arena, "%s/reports/papers", data_folder()),
+                                     &papers, &papers_count, error);
+    if (status != STATUS_OK)
+        return status;
     struct book *book = book_make(arena, run);
     book->run_name = last_name(arena, run->folder);
+    book->besides = papers_beside(book, papers, papers_count, &book->besides_count);
     return write_all(book, out_folder, error);
 }
 

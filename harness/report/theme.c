@@ -99,13 +99,17 @@ void theme_css(FILE *out)
     fputs("}\n", out);
 }
 
-void html_put_label(FILE *out, const struct book *book, const struct row *row)
+void html_put_mark(FILE *out, const struct book *book, size_t method_index)
 {
     fprintf(out,
             "<svg class=\"mark\" viewBox=\"-1.5 -1.5 3 3\" aria-hidden=\"true\" "
             "style=\"color:var(--%s)\">%s</svg>",
-            tint_variable(tint_method(book, row->method_index)),
-            symbol_html(book, row->method_index));
+            tint_variable(tint_method(book, method_index)), symbol_html(book, method_index));
+}
+
+void html_put_label(FILE *out, const struct book *book, const struct row *row)
+{
+    html_put_mark(out, book, row->method_index);
     html_put(out, row->label);
 }
 

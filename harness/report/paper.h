@@ -1,0 +1,134 @@
+/* Papers' printed tables beside a run: what they print, the cells of ours that stand for it, and
+ * what the run says to their claims. Only ratios within a machine are compared. */
+#ifndef TREELINE_REPORT_PAPER_H
+#define TREELINE_REPORT_PAPER_H
+
+#include "report/book.h"
+
+/* Of the frames along a repetition's path: the median one, or the 5 % slowest or fastest. */
+enum paper_statistic { PAPER_MEDIAN, PAPER_WORST, PAPER_BEST };
+enum paper_unit { PAPER_FPS, PAPER_SECONDS };
+
+/* Which cells are meant; what is not said is free. */
+struct paper_side {
+    const char *scene, *method, *options; /* NULL: free; options: canonical text */
+    bool has_lod;
+    enum lod lod;
+    size_t trees;            /* SIZE_MAX: free */
+    int width_px, height_px; /* 0: free */
+};
+
+/* One printed value. */
+struct paper_row {
+    struct paper_side
+        cell; /* of ours that stands for it; options NULL: each variant stands apart */
+    const char *effects, *note; /* as printed; note: "" */
+    enum paper_statistic statistic;
+    double value; /* in the table's unit */
+};
+
+struct paper_table {
+    const char *title;
+    enum paper_unit unit;
+    size_t rows_count, base; /* ratios are to the base row */
+    struct paper_row *rows;
+};
+
+enum paper_kind {
+    PAPER_UNTESTED, /* no figure of a run decides it */
+    PAPER_RATIO,  /* rate of some cells over that of others, pairs alike in all that no side says */
+    PAPER_GROWTH, /* exponent of the rate against the trees */
+    PAPER_VALUE   /* a rate itself */
+};
+struct paper_claim {
+    const char *id, *claim, *figure;
+    enum paper_kind kind;
+    enum paper_statistic statistic;
+    struct paper_side of, over;
+    double low, high; /* band in which the claim holds; infinite where it is open */
+    const char *why;  /* this band */
+};
+
+struct paper {
+    const char *name; /* of the file */
+    const char *title, *authors, *source, *machine, *note;
+    int year; /* 0: not known */
+    size_t tables_count, claims_count;
+    struct paper_table *tables;
+    struct paper_claim *claims;
+};
+
+/* One paper's file, as reports/papers/README.md says; unknown keys and values out of range are
+ * STATUS_INVALID. */
+enum status paper_read(struct arena *arena, const char *path, struct paper *paper,
+                       struct error *error);
+/* All of FOLDER/NAME.json, by name; a folder that is not there holds none. */
+enum status papers_read(struct arena *arena, const char *folder, struct paper **papers,
+                        size_t *count, struct error *error);
+
+/* A printed row beside ours. */
+struct paper_line {
+    const struct paper_row *printed;
+    const struct row *ours; /* NULL: not in the run */
+    size_t rounds;          /* of ours; 0: failed or missing */
+    double printed_ratio;
+    struct interval value; /* ours in the table's unit, over the rounds */
+    struct interval ratio; /* ours over our base row, paired by round; NaN: either is missing */
+};
+/* A table beside one variant of a method of ours. */
+struct paper_block {
+    const struct paper_table *table;
+    const struct row *example; /* one of the variant's rows: its name and colour */
+    size_t lines_count;
+    struct paper_line *lines;
+};
+
+enum paper_verdict { PAPER_HOLDS, PAPER_FAILS, PAPER_OPEN, PAPER_NOT_MEASURED };
+/* What a run says to a claim: one a variant of the method that the claim speaks of. */
+struct paper_finding {
+    const struct paper_claim *claim;
+    const struct row *example; /* NULL: nothing of it is in the run */
+    size_t pairs, usable;      /* ratios, series or values that the run holds; that succeeded */
+    size_t rounds;
+    struct interval ours;       /* geometric mean of the ratios, mean exponent, smallest rate */
+    double smallest, largest;   /* of the usable ones, each its median over rounds */
+    struct interval printed;    /* the same of the printed rows: mean, smallest, largest */
+    enum paper_verdict verdict; /* from the interval and the band */
+    const char *reason;
+};
+
+struct paper_beside {
+    const struct paper *paper;
+    size_t blocks_count, findings_count;
+    struct paper_block *blocks;
+    struct paper_finding *findings;
+};
+
+/* The papers that the run holds a cell of, at least one of a printed table. */
+struct paper_beside *papers_beside(const struct book *book, const struct paper *papers,
+                                   size_t papers_count, size_t *count);
+/* A paper's claims, judged; in the order of the file. */
+struct paper_finding *paper_judge(const struct book *book, const struct paper *paper,
+                                  size_t *count);
+
+/* A row's method and options, without its level: "shaded-texels path=naive". */
+const char *paper_variant(struct arena *arena, const struct row *row);
+const char *paper_verdict_word(enum paper_verdict verdict);
+const char *paper_unit_word(enum paper_unit unit);
+/* "3 or more", "-1.1 to -0.9". */
+const char *paper_band(struct arena *arena, const struct paper_claim *claim);
+
+/* A cell's rate or time in each round; NaN where the round failed or was not run. */
+struct paper_sample {
+    struct paper_side cell; /* nothing is free */
+    uint64_t seed;
+    enum target_format format;
+    const struct row *row; /* NULL: printed */
+    double *values;        /* rounds */
+};
+/* One a row of the book, in its order. */
+struct paper_sample *paper_samples(const struct book *book, enum paper_unit unit,
+                                   enum paper_statistic statistic, size_t *rounds);
+bool paper_side_matches(const struct paper_side *side, const struct paper_sample *sample);
+
+#endif
