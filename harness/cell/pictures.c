@@ -14,8 +14,8 @@ struct album {
     size_t count;
     uint64_t draw_calls, triangles;
     struct gl_statistics statistics;
-    struct tally tally; /* the method's own counts */
-    size_t pairs;       /* of a picture and the path's next one, both compared */
+    struct method_tally tally; /* the method's own counts */
+    size_t pairs;              /* of a picture and the path's next one, both compared */
     double flicker_squared, flicker_variance, flicker_worst;
     size_t flicker_view;
 };
@@ -66,9 +66,9 @@ static enum status picture_draw(struct stage *stage, const struct view *view, st
         gl_counters_reset(stage->gl);
         gl_statistics_begin(stage->gl);
     }
-    struct tally before = stage->workspace.tally;
+    struct method_tally before = stage->workspace.tally;
     enum status status = stage_draw(stage, view, NULL);
-    const struct tally *after = &stage->workspace.tally;
+    const struct method_tally *after = &stage->workspace.tally;
     album->tally.rays += after->rays - before.rays;
     album->tally.occlusion_rays += after->occlusion_rays - before.occlusion_rays;
     album->tally.lookups += after->lookups - before.lookups;

@@ -23,7 +23,7 @@ enum {
  * costs no time; for the same view the same figures. The harness takes the difference over a
  * picture; what stays 0 is not counted. With the machine's calibrated rates it tells what bounds a
  * cell (results/limit.h), so count what any program with this algorithm had to do, not waste. */
-struct tally {
+struct method_tally {
     uint64_t rays;           /* to the nearest triangle (embree_intersect), lanes, not packets */
     uint64_t occlusion_rays; /* to any triangle (embree_occluded) */
     uint64_t lookups;        /* loads of up to 8 bytes from places that rays or pixels decide: a
@@ -42,7 +42,7 @@ struct workspace {
     enum target_format format; /* of every target that will come */
     int threads;               /* that a CPU method may use, and llvmpipe uses */
     uint64_t seed;
-    struct tally tally; /* of all frames so far */
+    struct method_tally tally; /* of all frames so far */
 };
 
 struct method {          /* its name is its file's name, '-' written '_' in C */
