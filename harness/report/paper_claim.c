@@ -26,26 +26,26 @@ struct court {
 };
 
 /* Sums over pairs, a round: of logarithms, exponents; or the smallest value. */
-struct tally {
+struct poll {
     size_t pairs, usable;
     double *sums;
     double smallest, largest;
 };
 
-/* A figure of one pair in every round joins the tally; a round that lacks it drops out. */
-static void tally_add(struct court *court, struct tally *tally, const double *figures)
+/* A figure of one pair in every round joins the poll; a round that lacks it drops out. */
+static void poll_add(struct court *court, struct poll *poll, const double *figures)
 {
     double median = stats_median(figures, court->rounds);
-    tally->pairs++;
+    poll->pairs++;
     if (isnan(median))
         return;
-    tally->usable++;
+    poll->usable++;
     for (size_t r = 0; r < court->rounds; r++)
-        tally->sums[r] = court->claim->kind == PAPER_VALUE
-                             ? (isnan(figures[r]) ? NAN : fmin(tally->sums[r], figures[r]))
-                             : tally->sums[r] + figures[r];
-    tally->smallest = fmin(tally->smallest, median);
-    tally->largest = fmax(tally->largest, median);
+        poll->sums[r] = court->claim->kind == PAPER_VALUE
+                            ? (isnan(figures[r]) ? NAN : fmin(poll->sums[r], figures[r]))
+                            : poll->sums[r] + figures[r];
+    poll->smallest = fmin(poll->smallest, median);
+    poll->largest = fmax(poll->largest, median);
 }
 
 static bool same_text(const char *a, const char *b)
@@ -75,7 +75,7 @@ static bool is_of(const struct court *court, const struct paper_sample *sample)
            (!court->variant || same_text(court->variant, sample->cell.options));
 }
 
-static void tally_ratios(struct court *court, struct tally *tally)
+static void poll_ratios(struct court *court, struct poll *poll)
 {
     double *logs = ARENA_ARRAY(court->arena, double, court->rounds + 1);
     for (size_t i = 0; i < court->samples_count; i++)
@@ -86,7 +86,7 @@ static void tally_ratios(struct court *court, struct tally *tally)
                 continue;
             for (size_t r = 0; r < court->rounds; r++)
                 logs[r] = log(a->values[r] / b->values[r]);
-            tally_add(court, tally, logs);
+            poll_add(court, poll, logs);
         }
 }
 
@@ -113,43 +113,43 @@ static bool series_exponents(struct court *court, size_t first, double *exponent
     return true;
 }
 
-static void tally_growth(struct court *court, struct tally *tally)
+static void poll_growth(struct court *court, struct poll *poll)
 {
     double *exponents = ARENA_ARRAY(court->arena, double, court->rounds + 1);
     for (size_t i = 0; i < court->samples_count; i++)
         if (is_of(court, &court->samples[i]) && series_exponents(court, i, exponents))
-            tally_add(court, tally, exponents);
+            poll_add(court, poll, exponents);
 }
 
-static void tally_values(struct court *court, struct tally *tally)
+static void poll_values(struct court *court, struct poll *poll)
 {
     for (size_t i = 0; i < court->samples_count; i++)
         if (is_of(court, &court->samples[i]))
-            tally_add(court, tally, court->samples[i].values);
+            poll_add(court, poll, court->samples[i].values);
 }
 
-/* The claim's figure in each round in the tally's sums; NaN where a round lacks a pair. */
-static struct tally tally_make(struct court *court)
+/* The claim's figure in each round in the poll's sums; NaN where a round lacks a pair. */
+static struct poll poll_make(struct court *court)
 {
-    struct tally tally = {.sums = ARENA_ARRAY(court->arena, double, court->rounds + 1),
-                          .smallest = INFINITY,
-                          .largest = -INFINITY};
+    struct poll poll = {.sums = ARENA_ARRAY(court->arena, double, court->rounds + 1),
+                        .smallest = INFINITY,
+                        .largest = -INFINITY};
     bool is_ratio = court->claim->kind == PAPER_RATIO, is_value = court->claim->kind == PAPER_VALUE;
     for (size_t r = 0; r < court->rounds; r++)
-        tally.sums[r] = is_value ? INFINITY : 0;
+        poll.sums[r] = is_value ? INFINITY : 0;
     if (is_ratio)
-        tally_ratios(court, &tally);
+        poll_ratios(court, &poll);
     else if (is_value)
-        tally_values(court, &tally);
+        poll_values(court, &poll);
     else
-        tally_growth(court, &tally);
+        poll_growth(court, &poll);
     for (size_t r = 0; r < court->rounds; r++) {
-        double mean = is_value ? tally.sums[r] : tally.sums[r] / (double)tally.usable;
-        tally.sums[r] = tally.usable ? (is_ratio ? exp(mean) : mean) : NAN;
+        double mean = is_value ? poll.sums[r] : poll.sums[r] / (double)poll.usable;
+        poll.sums[r] = poll.usable ? (is_ratio ? exp(mean) : mean) : NAN;
     }
-    tally.smallest = !tally.usable ? NAN : is_ratio ? exp(tally.smallest) : tally.smallest;
-    tally.largest = !tally.usable ? NAN : is_ratio ? exp(tally.largest) : tally.largest;
-    return tally;
+    poll.smallest = !poll.usable ? NAN : is_ratio ? exp(poll.smallest) : poll.smallest;
+    poll.largest = !poll.usable ? NAN : is_ratio ? exp(poll.largest) : poll.largest;
+    return poll;
 }
 
 static void decide(struct arena *arena, struct paper_finding *finding)
@@ -186,16 +186,16 @@ static void decide(struct arena *arena, struct paper_finding *finding)
 
 static struct paper_finding find(struct court *court, const struct row *example)
 {
-    struct tally tally = tally_make(court);
+    struct poll poll = poll_make(court);
     struct paper_finding finding = {.claim = court->claim,
                                     .example = example,
-                                    .pairs = tally.pairs,
-                                    .usable = tally.usable,
-                                    .smallest = tally.smallest,
-                                    .largest = tally.largest};
+                                    .pairs = poll.pairs,
+                                    .usable = poll.usable,
+                                    .smallest = poll.smallest,
+                                    .largest = poll.largest};
     for (size_t r = 0; r < court->rounds; r++)
-        finding.rounds += !isnan(tally.sums[r]);
-    finding.ours = stats_median_interval(tally.sums, court->rounds, hash_text(0, court->claim->id));
+        finding.rounds += !isnan(poll.sums[r]);
+    finding.ours = stats_median_interval(poll.sums, court->rounds, hash_text(0, court->claim->id));
     return finding;
 }
 
