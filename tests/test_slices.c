@@ -312,6 +312,64 @@ static void test_slices__holes_of_a_texture_are_holes(void **state)
     arena_destroy(arena);
 }
 
+static void test_slices__colours_are_lit_as_each_side_sees_them(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    /* The leaf's normal is turned by .5 from +z toward +x. */
+    struct plant *leaf = shape_square(arena, 0.5f), *ball = shape_ball(arena);
+    struct slices_light lights[8];
+    for (int n = 0; n < 8; n++) {
+        float angle = n & 4 ? 2.6f : -0.3f;
+        lights[n] = (struct slices_light){.sun_direction = {sinf(angle), 0, cosf(angle)},
+                                          .sun_radiance = {2, 1, 0.5f},
+                                          .ambient = {0.1f, 0.2f, 0.3f},
+                                          .two_sided = n & 1,
+                                          .from_behind = n & 2};
+    }
+    struct slices_request request = request_of(40, 1, 4);
+    request.lights_count = 8;
+    request.lights = lights;
+    const struct slices *slices = make(arena, leaf, &request);
+    for (int n = 0; n < 8; n++) {
+        double d = cos(0.5 - (n & 4 ? 2.6 : -0.3)) * (n & 2 ? -1 : 1);
+        d = n & 1 ? fabs(d) : fmax(d, 0);
+        size_t checked = 0;
+        for (size_t i = 0; i < slices->texels_count; i++) {
+            const uint8_t *lit = slices->lit[(size_t)n * slices->texels_count + i];
+            assert_int_equal(lit[3], slices->color[i][3]);
+            if (lit[3] < 255)
+                continue;
+            checked++;
+            for (int k = 0; k < 3; k++) {
+                double radiance = 0.5 * (d * lights[n].sun_radiance[k] + lights[n].ambient[k]);
+                assert_float_equal(lit[k] * slices->lit_scale / 255, radiance, 0.005);
+            }
+        }
+        assert_true(checked > 300);
+    }
+    /* Over a ball's disc, max(0, N.L) has the mean 2/3 where the sun stands behind the eye, 0 where
+     * it stands opposite. */
+    for (int n = 0; n < 4; n++) {
+        lights[n] = (struct slices_light){.sun_direction = {0, 0, n & 1 ? -1 : 1},
+                                          .sun_radiance = {1, 1, 1},
+                                          .two_sided = true,
+                                          .from_behind = n & 2};
+        request.lights_count = (size_t)n + 1;
+    }
+    slices = make(arena, ball, &request);
+    for (int n = 0; n < 4; n++) {
+        double sum = 0, covered = 0;
+        for (size_t i = 0; i < slices->texels_count; i++) {
+            const uint8_t *lit = slices->lit[(size_t)n * slices->texels_count + i];
+            sum += lit[0] * slices->lit_scale / 0.5;
+            covered += lit[3];
+        }
+        assert_float_equal(sum / covered, n == 0 || n == 3 ? 2.0 / 3 : 0, 0.005);
+    }
+    arena_destroy(arena);
+}
+
 static void test_slices__sizes_from_one_to_the_most_are_made(void **state)
 {
     (void)state;
@@ -406,6 +464,7 @@ int main(void)
         cmocka_unit_test(test_slices__a_stack_seen_from_the_front_is_what_rays_see),
         cmocka_unit_test(test_slices__parts_are_told_apart),
         cmocka_unit_test(test_slices__holes_of_a_texture_are_holes),
+        cmocka_unit_test(test_slices__colours_are_lit_as_each_side_sees_them),
         cmocka_unit_test(test_slices__sizes_from_one_to_the_most_are_made),
         cmocka_unit_test(test_slices__a_wrong_request_is_refused_by_name),
         cmocka_unit_test(test_slices__neither_threads_nor_the_cache_change_a_byte),

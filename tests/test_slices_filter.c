@@ -1,7 +1,8 @@
-/* Filters of slices beside their formulas. */
+/* Filters of slices beside their formulas, and the casting of lines that graze. */
 #include "slices_meshes.h"
 
 #include "bake/slices.h"
+#include "bake/slices_raster.h"
 
 enum { F = SLICES_FLOATS };
 
@@ -224,6 +225,49 @@ static void test_slices_filter__a_pyramid_of_slices_looks_as_its_foot_does(void 
     arena_destroy(arena);
 }
 
+static void test_raster__a_line_through_edges_and_corners_meets_one_triangle(void **state)
+{
+    (void)state;
+    /* A sheet of SIDE x SIDE cells, in eight triangles each, whose corners and edges all lie on
+     * lines; every second triangle is seen from behind. */
+    enum { SIDE = 4, CELL = 4, LINES = SIDE * CELL + 1, TRIANGLES = SIDE * SIDE * 8 };
+    static const int ring[9][2] = {{0, 0}, {2, 0}, {4, 0}, {4, 2}, {4, 4},
+                                   {2, 4}, {0, 4}, {0, 2}, {0, 0}};
+    static int32_t points[3 * TRIANGLES][2];
+    static float depths[3 * TRIANGLES];
+    static uint32_t triangles[TRIANGLES][3], list[TRIANGLES];
+    for (uint32_t t = 0; t < TRIANGLES; t++) {
+        int cell = (int)(t / 8), n = (int)(t % 8);
+        const int corners[3][2] = {
+            {2, 2}, {ring[n][0], ring[n][1]}, {ring[n + 1][0], ring[n + 1][1]}};
+        list[t] = t;
+        for (uint32_t k = 0; k < 3; k++) {
+            int x = cell % SIDE * CELL + corners[k][0], y = cell / SIDE * CELL + corners[k][1];
+            triangles[t][k] = 3 * t + (t & 1 ? 2 - k : k);
+            points[3 * t + k][0] = x * 1024 + 512;
+            points[3 * t + k][1] = y * 1024 + 512;
+            depths[3 * t + k] = (float)x + 10 * (float)y;
+        }
+    }
+    struct arena *arena = arena_create(0);
+    struct raster_plane plane = {LINES, LINES, points, depths, (const uint32_t(*)[3])triangles};
+    for (int first = 0; first < LINES; first += 5) { /* in bands */
+        int rows = LINES - first < 5 ? LINES - first : 5;
+        struct raster_band band;
+        raster_cast(arena, &plane, list, TRIANGLES, first, rows, &band);
+        for (int at = 0; at < rows * LINES; at++) {
+            int i = at % LINES, j = first + at / LINES;
+            size_t hits = band.first[at + 1] - band.first[at];
+            if (i > 0 && j > 0 && i < LINES - 1 && j < LINES - 1)
+                assert_int_equal(hits, 1);
+            assert_true(hits <= 1);
+            if (hits)
+                assert_float_equal(band.hits[band.first[at]].depth, i + 10 * j, 1e-3);
+        }
+    }
+    arena_destroy(arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +275,7 @@ int main(void)
         cmocka_unit_test(test_slices_filter__halving_keeps_the_mean),
         cmocka_unit_test(test_slices_filter__bytes_hold_straight_colour_and_unit_normals),
         cmocka_unit_test(test_slices_filter__dilation_takes_from_covered_neighbours_alone),
+        cmocka_unit_test(test_raster__a_line_through_edges_and_corners_meets_one_triangle),
         cmocka_unit_test(test_slices_filter__a_pyramid_of_slices_looks_as_its_foot_does),
     };
     setenv("TREELINE_CACHE", "off", 1);

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Changes whenever the same request would bake other bytes. */
-enum { SLICES_VERSION = 1, DIRECTIONS_MOST = 64 };
+enum { SLICES_VERSION = 2, DIRECTIONS_MOST = 64 };
 
 const float slices_axes[3][3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
 
@@ -33,6 +33,8 @@ static enum status check(const struct slices_request *request, struct error *err
         status = in_range("count", request->count, 1, SLICES_MOST, error);
     if (status == STATUS_OK)
         status = in_range("samples", request->samples, 1, 8, error);
+    if (status == STATUS_OK)
+        status = in_range("lights", (long)request->lights_count, 0, SLICES_LIGHTS, error);
     for (size_t i = 0; status == STATUS_OK && i < request->directions_count; i++) {
         const float *d = request->directions[i];
         float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
@@ -99,7 +101,7 @@ static const struct slices *cached_slices(struct arena *arena, uint64_t key,
         return NULL;
     struct slices *slices = data;
     if (slices->stacks_count != request->directions_count || slices->count != request->count ||
-        slices->texels_count > size)
+        slices->texels_count > size || slices->lights_count > 0)
         return NULL;
     struct packing packing = pack(slices);
     if (packing.total != size)
@@ -125,14 +127,15 @@ enum status slices_create(struct arena *arena, struct plant *plant,
     if (status != STATUS_OK)
         return status;
     key = key_of(key, request);
-    if ((*slices = cached_slices(arena, key, request)) != NULL)
+    if (request->lights_count == 0 && (*slices = cached_slices(arena, key, request)) != NULL)
         return STATUS_OK;
     status = plant_mesh(plant, &mesh, error);
     if (status != STATUS_OK)
         return status;
     struct slices *made = ARENA_NEW(arena, struct slices);
     slices_bake(arena, mesh, request, threads, made);
-    cache_slices(key, made);
+    if (request->lights_count == 0)
+        cache_slices(key, made);
     *slices = made;
     return STATUS_OK;
 }

@@ -29,6 +29,16 @@
 enum slices_cut { SLICES_CLIP, SLICES_CENTROID };
 enum { SLICES_BARK = 1, SLICES_LEAVES = 2 }; /* parts, bits */
 enum { SLICES_MOST = 512 };                  /* slices of a stack, texels of a side */
+enum { SLICES_LIGHTS = 64 };
+
+/* Light that colours are baked under. Bark's light is max(0, N.L), a leaf's |N.L| or, one-sided,
+ * max(0, N.L) with N toward the eye. */
+struct slices_light {
+    float sun_direction[3]; /* unit, plant's space, toward the sun */
+    float sun_radiance[3], ambient[3];
+    bool two_sided;
+    bool from_behind; /* as seen from there */
+};
 
 struct slices_request {
     size_t directions_count;      /* 1..64 */
@@ -38,6 +48,9 @@ struct slices_request {
     int samples;                  /* along a texel's side, 1..8 */
     enum slices_cut cut;
     unsigned parts; /* SLICES_BARK | SLICES_LEAVES */
+    /* 0..SLICES_LIGHTS; what is lit is not kept on disk: baking is as fast. */
+    size_t lights_count;
+    const struct slices_light *lights;
 };
 
 /* One slice: the smallest rectangle that holds its covered texels. The bilinear footprint of the
@@ -65,6 +78,10 @@ struct slices {
                              that 128 is 0; share of leaf in the coverage, n / 255; where covered */
     uint16_t *depth;      /* texels: mean depth, 0 at the slab's back, 65535 at its front (clamped:
                              a leaf of SLICES_CENTROID may reach out); where covered */
+    size_t lights_count;
+    float lit_scale;   /* radiance of a full texel */
+    uint8_t (*lit)[4]; /* lights x texels: the mean radiance of what color holds, in its form: in
+                          color's place, with lit_scale in albedo_scale's, it is a stack too */
 };
 
 /* Slices of a plant, from the cache or baked by at most `threads` threads (the same bytes for any
@@ -82,6 +99,8 @@ extern const float slices_axes[3][3];
  * sums. ---- */
 enum { SLICES_FLOATS = 8 };
 
+/* Texels [first, first + count) of the arrays. */
+void slices_decode(const struct slices *slices, size_t first, size_t count, float *texels);
 /* The whole picture of one slice, width_px x height_px; zeros outside of its rectangle. */
 void slices_expand(const struct slices *slices, size_t stack, int slice, float *texels);
 /* The mean of 2 x 2 texels (a side of 1 stays, the last of an odd side is dropped into its

@@ -4,24 +4,27 @@
 #include <math.h>
 #include <string.h>
 
+void slices_decode(const struct slices *slices, size_t first, size_t count, float *texels)
+{
+    for (size_t at = first; at < first + count; at++, texels += SLICES_FLOATS) {
+        float coverage = slices->color[at][3] / 255.0f;
+        for (int k = 0; k < 4; k++)
+            texels[k] = slices->color[at][k] / 255.0f;
+        for (int k = 0; k < 3; k++)
+            texels[4 + k] = coverage * (float)(slices->normal[at][k] - 128) / 127.0f;
+        texels[7] = coverage * slices->normal[at][3] / 255.0f;
+    }
+}
+
 void slices_expand(const struct slices *slices, size_t stack, int slice, float *texels)
 {
     const struct slice *from = &slices->slices[stack * (size_t)slices->count + (size_t)slice];
-    size_t pixels = (size_t)slices->width_px * (size_t)slices->height_px, at = from->first;
+    size_t width = (size_t)slices->width_px, pixels = width * (size_t)slices->height_px;
     memset(texels, 0, pixels * SLICES_FLOATS * sizeof *texels);
-    for (int y = 0; y < from->height; y++) {
-        float *to =
-            texels + SLICES_FLOATS * ((size_t)(from->bottom + y) * (size_t)slices->width_px +
-                                      (size_t)from->left);
-        for (int x = 0; x < from->width; x++, at++, to += SLICES_FLOATS) {
-            float coverage = slices->color[at][3] / 255.0f;
-            for (int k = 0; k < 4; k++)
-                to[k] = slices->color[at][k] / 255.0f;
-            for (int k = 0; k < 3; k++)
-                to[4 + k] = coverage * (float)(slices->normal[at][k] - 128) / 127.0f;
-            to[7] = coverage * slices->normal[at][3] / 255.0f;
-        }
-    }
+    for (size_t y = 0; y < (size_t)from->height; y++)
+        slices_decode(slices, from->first + y * (size_t)from->width, (size_t)from->width,
+                      texels + SLICES_FLOATS *
+                                   (((size_t)from->bottom + y) * width + (size_t)from->left));
 }
 
 /* Sources [first, first + 2) of texel `to` of a halved side, and their weights: an odd side of 2 n

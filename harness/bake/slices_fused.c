@@ -43,31 +43,23 @@ static size_t texel_at(const struct slice *slice, int x, int y)
 }
 
 static void fuse_pair(const struct slices *slices, size_t stack, int index, bool from_behind,
-                      struct slices *fused, float *front, float *back)
+                      struct slices *fused)
 {
     static const struct slice nothing;
-    const struct slice *pair[2] = {&nothing, NULL}; /* front, back */
-    const struct slice *first = slices->slices + stack * (size_t)slices->count;
+    const struct slice *back = &slices->slices[stack * (size_t)slices->count + 2 * (size_t)index];
+    const struct slice *front = 2 * index + 1 < slices->count ? back + 1 : &nothing;
     const struct slice *to = &fused->slices[stack * (size_t)fused->count + (size_t)index];
-    size_t pixels = (size_t)slices->width_px * (size_t)slices->height_px;
-    pair[1] = &first[2 * index];
-    slices_expand(slices, stack, 2 * index, back);
-    memset(front, 0, pixels * SLICES_FLOATS * sizeof *front);
-    if (2 * index + 1 < slices->count) {
-        pair[0] = &first[2 * index + 1];
-        slices_expand(slices, stack, 2 * index + 1, front);
-    }
-    slices_fuse(from_behind ? back : front, from_behind ? front : back, pixels, back);
-    for (int y = 0; y < to->height; y++) {
-        size_t at = to->first + (size_t)y * (size_t)to->width;
-        size_t from = (size_t)(to->bottom + y) * (size_t)slices->width_px + (size_t)to->left;
-        slices_encode(back + from * SLICES_FLOATS, (size_t)to->width, false, false,
-                      fused->color + at, fused->normal + at);
-        for (int x = 0; x < to->width; x++) {
-            const size_t texels[2] = {texel_at(pair[0], to->left + x, to->bottom + y),
-                                      texel_at(pair[1], to->left + x, to->bottom + y)};
-            fused->depth[at + (size_t)x] = mean_depth(slices, texels, from_behind);
-        }
+    for (int n = 0; n < to->width * to->height; n++) {
+        int x = to->left + n % to->width, y = to->bottom + n / to->width;
+        const size_t at[2] = {texel_at(front, x, y), texel_at(back, x, y)};
+        float texels[2][SLICES_FLOATS] = {{0}};
+        for (int k = 0; k < 2; k++)
+            if (at[k] != SIZE_MAX)
+                slices_decode(slices, at[k], 1, texels[k]);
+        slices_fuse(texels[from_behind], texels[!from_behind], 1, texels[0]);
+        slices_encode(texels[0], 1, false, false, fused->color + to->first + n,
+                      fused->normal + to->first + n);
+        fused->depth[to->first + (size_t)n] = mean_depth(slices, at, from_behind);
     }
 }
 
@@ -76,12 +68,10 @@ const struct slices *slices_fused(struct arena *arena, const struct slices *slic
 {
     static const struct slice nothing;
     struct slices *fused = ARENA_NEW(arena, struct slices);
-    struct arena *scratch = arena_create(0);
-    size_t pixels = (size_t)slices->width_px * (size_t)slices->height_px;
-    float *pictures[2];
     *fused = *slices;
     fused->count = (slices->count + 1) / 2;
-    fused->texels_count = 0;
+    fused->texels_count = fused->lights_count = 0;
+    fused->lit = NULL;
     fused->stacks = ARENA_ARRAY(arena, struct slices_stack, slices->stacks_count);
     memcpy(fused->stacks, slices->stacks, slices->stacks_count * sizeof *fused->stacks);
     fused->slices = ARENA_ARRAY(arena, struct slice, slices->stacks_count * (size_t)fused->count);
@@ -96,15 +86,14 @@ const struct slices *slices_fused(struct arena *arena, const struct slices *slic
     fused->color = arena_alloc(arena, fused->texels_count, sizeof *fused->color);
     fused->normal = arena_alloc(arena, fused->texels_count, sizeof *fused->normal);
     fused->depth = ARENA_ARRAY(arena, uint16_t, fused->texels_count);
-    for (int k = 0; k < 2; k++)
-        pictures[k] = ARENA_ARRAY(scratch, float, pixels *SLICES_FLOATS);
     for (size_t stack = 0; stack < slices->stacks_count; stack++) {
         struct slices_stack *box = &fused->stacks[stack];
         float slab = (box->high_m[2] - box->low_m[2]) / (float)slices->count;
         box->high_m[2] = box->low_m[2] + slab * 2 * (float)fused->count;
-        for (int index = 0; index < fused->count; index++)
-            fuse_pair(slices, stack, index, from_behind, fused, pictures[0], pictures[1]);
     }
-    arena_destroy(scratch);
+#pragma omp parallel for schedule(dynamic)
+    for (size_t i = 0; i < slices->stacks_count * (size_t)fused->count; i++)
+        fuse_pair(slices, i / (size_t)fused->count, (int)(i % (size_t)fused->count), from_behind,
+                  fused);
     return fused;
 }
