@@ -52,7 +52,10 @@ LDFLAGS_ALL := $(MODE) -fopenmp -rdynamic $(LDFLAGS)
 
 # Sources. A GL back end, or the lack of one, is a file.
 WALL_SKIP := $(if $(GL_OSMESA),,harness/wall/gl_osmesa.c) $(if $(GL_EGL),,harness/wall/gl_egl.c)
-SOURCES := $(filter-out $(WALL_SKIP) harness/cli/treeline.c,$(sort $(wildcard harness/*/*.c))) \
+# Kernels for a processor's own vectors: files of their own, with the flags that they need.
+ARCHITECTURE := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
+MARCH_SKIP := $(if $(filter x86_64,$(ARCHITECTURE)),harness/bake/march_isa_any.c,$(addprefix harness/bake/march_,isa_x86.c avx2.c avx512.c))
+SOURCES := $(filter-out $(WALL_SKIP) $(MARCH_SKIP) harness/cli/treeline.c,$(sort $(wildcard harness/*/*.c))) \
     $(sort $(wildcard methods/*.c))
 GENERATED_C := $(GEN)/methods_builtin.c $(GEN)/gl_load.c $(GEN)/gl_backends.c
 GENERATED_H := $(GEN)/gl_functions.inc $(GEN)/build_facts.h \
@@ -85,6 +88,8 @@ $(ARCHIVE): $(OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^
 
+$(BUILD)/harness/bake/march_avx2.o $(BUILD)/harness/bake/march_avx2.tidy: CFLAGS_ALL += -mavx2
+$(BUILD)/harness/bake/march_avx512.o $(BUILD)/harness/bake/march_avx512.tidy: CFLAGS_ALL += -mavx512f -mavx512dq -mavx512bw -mavx512vl
 $(BUILD)/%.o: %.c | $(GENERATED_H)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) -c -o $@ $<

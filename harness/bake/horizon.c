@@ -10,7 +10,7 @@ struct horizon {
     GLuint program, no_vertices;
 };
 
-static bool terrain_is_flat(const struct terrain *terrain)
+bool horizon_is_flat(const struct terrain *terrain)
 {
     size_t count = (size_t)terrain->samples_x * terrain->samples_z;
     for (size_t i = 0; i < count; i++)
@@ -25,7 +25,7 @@ enum status horizon_prepare(struct workspace *workspace, const struct scene *sce
     struct gl *gl = workspace->gl;
     struct horizon *made = *horizon = ARENA_NEW(workspace->arena, struct horizon);
     made->scene = scene;
-    made->flat = scene->terrain.samples_x > 0 && terrain_is_flat(&scene->terrain);
+    made->flat = scene->terrain.samples_x > 0 && horizon_is_flat(&scene->terrain);
     if (!made->flat)
         return STATUS_OK;
     made->no_vertices = gl_vertex_array(gl);
@@ -47,8 +47,7 @@ static void clip_ray(const struct view *view, float x, float y, float ray[3])
         ray[axis] = view->forward[axis] + x * right * view->right[axis] + y * up * view->up[axis];
 }
 
-/* x, y in pixels from the lower left corner, and the depth along the view. */
-static void screen_of(const struct view *view, const float world_m[3], float screen[3])
+void horizon_screen(const struct view *view, const float world_m[3], float screen[3])
 {
     float clip[4];
     for (int row = 0; row < 4; row++)
@@ -67,7 +66,7 @@ static bool cut_border(const struct view *view, const float middle_m[3], float e
 {
     float screen[2][3], inner_m[3], inner[3];
     for (int end = 0; end < 2; end++)
-        screen_of(view, ends[end], screen[end]);
+        horizon_screen(view, ends[end], screen[end]);
     float near_m = 2 * view->near_m;
     if (screen[0][2] < near_m && screen[1][2] < near_m)
         return false;
@@ -75,7 +74,7 @@ static bool cut_border(const struct view *view, const float middle_m[3], float e
         float share = (near_m - screen[end][2]) / (screen[!end][2] - screen[end][2]);
         for (int axis = 0; axis < 3 && screen[end][2] < near_m; axis++)
             ends[end][axis] += share * (ends[!end][axis] - ends[end][axis]);
-        screen_of(view, ends[end], screen[end]);
+        horizon_screen(view, ends[end], screen[end]);
     }
     /* a point of the ground just within, beside the farther end */
     int far_end = screen[1][2] > screen[0][2];
@@ -83,7 +82,7 @@ static bool cut_border(const struct view *view, const float middle_m[3], float e
         float along = 0.5f * ends[far_end][axis] + 0.5f * ends[!far_end][axis];
         inner_m[axis] = along + 1e-3f * (middle_m[axis] - along);
     }
-    screen_of(view, inner_m, inner);
+    horizon_screen(view, inner_m, inner);
     float x = screen[1][0] - screen[0][0], y = screen[1][1] - screen[0][1];
     float length = sqrtf(x * x + y * y);
     float side = x * (inner[1] - screen[0][1]) - y * (inner[0] - screen[0][0]);
@@ -94,21 +93,13 @@ static bool cut_border(const struct view *view, const float middle_m[3], float e
     return true;
 }
 
-void horizon_draw(struct workspace *workspace, const struct horizon *horizon,
-                  const struct view *view)
+int horizon_borders(const struct terrain *terrain, const struct view *view, float ends[8][3],
+                    float inward[4][2])
 {
-    struct gl *gl = workspace->gl;
-    const struct terrain *terrain = &horizon->scene->terrain;
-    const struct sky *sky = &horizon->scene->sky;
-    GLuint program = horizon->program;
-    GLint samples = 0, count = 0;
-    gl->GetIntegerv(GL_SAMPLES, &samples);
-    if (!horizon->flat || samples > 1 || !eye_is_within(terrain, view->eye_m))
-        return;
-    float ends[8][3], inward[4][2], rays[3][3];
+    int count = 0;
     float middle[3] = {view->eye_m[0], terrain->heights_m[0], view->eye_m[2]};
-    for (int border = 0; border < 4; border++) {
-        float(*end)[3] = ends + 2 * count;
+    for (int border = 0; border < 4 && eye_is_within(terrain, view->eye_m); border++) {
+        float(*end)[3] = ends + 2 * (size_t)count;
         for (int i = 0; i < 2; i++) {
             int corner = (border + i) % 4;
             end[i][0] = (corner == 1 || corner == 2 ? 0.5f : -0.5f) * terrain->size_x_m;
@@ -117,6 +108,24 @@ void horizon_draw(struct workspace *workspace, const struct horizon *horizon,
         }
         count += cut_border(view, middle, end, inward[count]);
     }
+    return count;
+}
+
+void horizon_draw(struct workspace *workspace, const struct horizon *horizon,
+                  const struct view *view)
+{
+    struct gl *gl = workspace->gl;
+    const struct terrain *terrain = &horizon->scene->terrain;
+    const struct sky *sky = &horizon->scene->sky;
+    GLuint program = horizon->program;
+    GLint samples = 0;
+    gl->GetIntegerv(GL_SAMPLES, &samples);
+    if (!horizon->flat || samples > 1)
+        return;
+    float ends[8][3], inward[4][2], rays[3][3];
+    GLint count = horizon_borders(terrain, view, ends, inward);
+    if (!count)
+        return;
     float right_px = 2 / (float)view->width_px, up_px = 2 / (float)view->height_px;
     clip_ray(view, -1, -1, rays[0]);
     clip_ray(view, -1 + right_px, -1, rays[1]);

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VOXELS_VERSION = 1 };
+enum { VOXELS_VERSION = 2 };
 
 /* Two-pass chamfer with unit weights is exact for the chessboard distance (Borgefors 1986). */
 static void distance_sweep(const uint32_t size[3], uint32_t *cells, bool back)

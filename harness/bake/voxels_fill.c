@@ -249,21 +249,28 @@ static bool children_of(const struct voxel_grid *fine, const uint32_t at[3],
     return any;
 }
 
-/* Rays along an axis pass two cells in each of four columns. */
+/* Rays along an axis pass two cells in each of four columns. The cells' covers are known better
+ * than from the few rays that are kept of them: these say only how much hides behind each other. */
 static void mass_see(struct voxel_mass *sum, const struct voxel_mass *const children[8], int axis)
 {
     int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    float cover = 0, apart = 0, together = 0;
     for (int column = 0; column < 4; column++) {
         int right = column & 1, up = column >> 1;
         uint64_t bits = 0;
         for (int step = 0; step < 2; step++) {
             const struct voxel_mass *child = children[step << axis | right << b | up << c];
-            bits |= child ? child->rays[axis] : 0;
+            if (!child)
+                continue;
+            bits |= child->rays[axis];
+            apart += share_of_bits(child->rays[axis]);
+            cover += 0.25f * child->cover[axis];
         }
-        sum->cover[axis] += 0.25f * share_of_bits(bits);
+        together += share_of_bits(bits);
         sum->rays[axis] |= every_other(bits)
                            << (VOXEL_RAYS / 2 * right + VOXEL_RAYS * VOXEL_RAYS / 2 * up);
     }
+    sum->cover[axis] = fminf(1, apart > 0 ? cover * together / apart : cover);
 }
 
 void voxel_grid_halve(struct arena *arena, const struct voxel_grid *fine, struct voxel_grid *coarse)

@@ -1,0 +1,323 @@
+/* The march's frame: trees sorted and binned to tiles, tiles drawn front to back by all threads. */
+#include "bake/cull.h"
+#include "bake/march_job.h"
+
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+enum { TILE_MAX = 64, TILE_BLOCKS_MAX = (TILE_MAX / MARCH_BLOCK) * (TILE_MAX / MARCH_BLOCK) };
+
+struct march {
+    const struct scene *scene;
+    struct march_options options;
+    march_block *block;
+    const struct voxels **volumes; /* one a species */
+    struct march_tree *trees;      /* one an instance */
+    struct cull *cull;
+    struct backdrop_cpu *backdrop;
+    struct march_seen *seen; /* of the trees in view, in their order */
+    size_t tiles_capacity, entries_capacity;
+    uint32_t *tile_first; /* threads + 1 runs of tiles + 1 */
+    uint32_t *entries;    /* numbers of the list, tile by tile */
+};
+
+static enum status isa_choose(struct march *march, const char *name, struct error *error)
+{
+    struct march_isa isas[4];
+    size_t count = march_isas(isas);
+    march->block = isas[count - 1].block;
+    for (size_t i = 0; i < count && name; i++)
+        if (!strcmp(isas[i].name, name)) {
+            march->block = isas[i].block;
+            return STATUS_OK;
+        }
+    return name ? error_set(error, STATUS_UNAVAILABLE, "isa: this processor has no %s", name)
+                : STATUS_OK;
+}
+
+static void trees_fill(struct march *march, const struct scene *scene)
+{
+    for (size_t i = 0; i < scene->instances_count; i++) {
+        const struct instance *instance = &scene->instances[i];
+        struct march_tree *tree = &march->trees[i];
+        memcpy(tree->position_m, instance->position_m, sizeof tree->position_m);
+        tree->cosine = cosf(instance->rotation_rad);
+        tree->sine = sinf(instance->rotation_rad);
+        tree->scale = instance->scale;
+        tree->species = instance->species;
+    }
+}
+
+enum status march_prepare(struct workspace *workspace, const struct scene *scene,
+                          const struct march_options *options, struct march **result)
+{
+    struct march *march = *result = ARENA_NEW(workspace->arena, struct march);
+    march->scene = scene;
+    march->options = *options;
+    enum status status = isa_choose(march, options->isa, workspace->error);
+    if (!status)
+        status = backdrop_cpu_prepare(workspace, scene, &march->backdrop);
+    march->volumes = ARENA_ARRAY(workspace->arena, const struct voxels *, scene->species_count);
+    struct cull_bound *bounds =
+        ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count);
+    for (size_t i = 0; i < scene->species_count && !status; i++) {
+        const struct mesh *mesh;
+        status = voxels_of_plant(workspace->arena, scene->species[i].plant, options->resolution,
+                                 &march->volumes[i], workspace->error);
+        if (!status)
+            status = plant_mesh(scene->species[i].plant, &mesh, workspace->error);
+        if (!status)
+            bounds[i] = cull_bound_of(mesh);
+    }
+    if (status)
+        return status;
+    march->trees = ARENA_ARRAY(workspace->arena, struct march_tree, scene->instances_count);
+    march->seen = ARENA_ARRAY(workspace->arena, struct march_seen, scene->instances_count);
+    trees_fill(march, scene);
+    march->cull = cull_create(workspace->arena, scene, bounds);
+    return STATUS_OK;
+}
+
+/* The picture cut into tiles. */
+struct tiles {
+    int side_px, across, down;
+    size_t count;
+};
+
+static struct tiles tiles_of(const struct march *march, const struct view *view)
+{
+    struct tiles tiles = {.side_px = march->options.tile_px / MARCH_BLOCK * MARCH_BLOCK};
+    tiles.across = (view->width_px + tiles.side_px - 1) / tiles.side_px;
+    tiles.down = (view->height_px + tiles.side_px - 1) / tiles.side_px;
+    tiles.count = (size_t)tiles.across * (size_t)tiles.down;
+    return tiles;
+}
+
+/* Calls for each tile that a tree touches: counts, or puts the entry to its place. */
+static void tree_bin(const struct tiles *tiles, const struct march_seen *seen, uint32_t *places,
+                     uint32_t *entries, uint32_t entry)
+{
+    if (seen->low[0] > seen->high[0] || seen->low[1] > seen->high[1])
+        return;
+    for (int y = seen->low[1] / tiles->side_px; y <= seen->high[1] / tiles->side_px; y++)
+        for (int x = seen->low[0] / tiles->side_px; x <= seen->high[0] / tiles->side_px; x++) {
+            uint32_t place = places[(size_t)y * (size_t)tiles->across + (size_t)x]++;
+            if (entries)
+                entries[place] = entry;
+        }
+}
+
+/* Counts in each thread's run become the places of its first entries; returns how many in all. */
+static size_t places_of(uint32_t *first, const struct tiles *tiles, int threads)
+{
+    size_t sum = 0, run = tiles->count + 1;
+    for (size_t tile = 0; tile <= tiles->count; tile++) {
+        first[tile] = (uint32_t)sum;
+        for (int thread = 0; thread < threads && tile < tiles->count; thread++) {
+            uint32_t *place = &first[(size_t)(thread + 1) * run + tile];
+            uint32_t count = *place;
+            *place = (uint32_t)sum;
+            sum += count;
+        }
+    }
+    return sum;
+}
+
+/* Threads take runs of the sorted list, so that each tile's entries keep the list's order. */
+static void bin(struct workspace *workspace, struct march *march, const struct march_view *picture,
+                const struct tiles *tiles, const struct cull_list *list)
+{
+    const int threads = workspace->threads;
+    const size_t run = tiles->count + 1, size = run * ((size_t)threads + 1);
+    if (size > march->tiles_capacity) {
+        march->tile_first = ARENA_ARRAY(workspace->arena, uint32_t, size);
+        march->tiles_capacity = size;
+    }
+    memset(march->tile_first, 0, size * sizeof *march->tile_first);
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (int thread = 0; thread < threads; thread++) {
+        size_t end = list->count * ((size_t)thread + 1) / (size_t)threads;
+        for (size_t k = list->count * (size_t)thread / (size_t)threads; k < end; k++) {
+            const struct march_tree *tree = &march->trees[list->instances[k]];
+            march->seen[k] =
+                march_see(picture, tree, march->volumes[tree->species], list->depths_m[k]);
+            tree_bin(tiles, &march->seen[k], march->tile_first + run * ((size_t)thread + 1), NULL,
+                     0);
+        }
+    }
+    size_t count = places_of(march->tile_first, tiles, threads);
+    if (count > march->entries_capacity) {
+        march->entries_capacity = count + count / 2;
+        march->entries = ARENA_ARRAY(workspace->arena, uint32_t, march->entries_capacity);
+    }
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (int thread = 0; thread < threads; thread++) {
+        size_t end = list->count * ((size_t)thread + 1) / (size_t)threads;
+        for (size_t k = list->count * (size_t)thread / (size_t)threads; k < end; k++)
+            tree_bin(tiles, &march->seen[k], march->tile_first + run * ((size_t)thread + 1),
+                     march->entries, (uint32_t)k);
+    }
+}
+
+/* A tile while it is drawn. */
+struct canvas {
+    struct march_rays blocks[TILE_BLOCKS_MAX];
+    bool open[TILE_BLOCKS_MAX]; /* more can be seen through it */
+    float depths_m[TILE_MAX * TILE_MAX];
+    float rgb[TILE_MAX * TILE_MAX][3];
+    struct backdrop_tile tile;
+    int across, blocks_count, open_count;
+};
+
+static void canvas_begin(struct canvas *canvas, const struct march *march,
+                         const struct tiles *tiles, const struct view *view, size_t tile)
+{
+    const int side = tiles->side_px;
+    int x = (int)(tile % (size_t)tiles->across) * side;
+    int y = (int)(tile / (size_t)tiles->across) * side;
+    canvas->tile = (struct backdrop_tile){
+        .x_px = x,
+        .y_px = y,
+        .width_px = x + side < view->width_px ? side : view->width_px - x,
+        .height_px = y + side < view->height_px ? side : view->height_px - y,
+        .stride = side,
+        .depths_m = canvas->depths_m,
+        .rgb = canvas->rgb,
+    };
+    backdrop_cpu_tile(march->backdrop, &canvas->tile);
+    canvas->across = side / MARCH_BLOCK;
+    canvas->blocks_count = canvas->open_count = canvas->across * canvas->across;
+    memset(canvas->blocks, 0, (size_t)canvas->blocks_count * sizeof *canvas->blocks);
+    for (int row = 0; row < canvas->tile.height_px; row++)
+        for (int column = 0; column < canvas->tile.width_px; column++) {
+            struct march_rays *rays =
+                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
+            int lane = row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK;
+            rays->left[lane] = 1;
+            rays->depths_m[lane] = canvas->depths_m[row * side + column];
+        }
+    for (int block = 0; block < canvas->blocks_count; block++)
+        canvas->open[block] = true;
+}
+
+/* Pixels outside the picture were never opened. */
+static void canvas_end(const struct canvas *canvas, float stop, const struct view *view,
+                       float *pixels)
+{
+    const struct backdrop_tile *tile = &canvas->tile;
+    for (int row = 0; row < tile->height_px; row++)
+        for (int column = 0; column < tile->width_px; column++) {
+            const struct march_rays *rays =
+                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
+            int lane = row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK;
+            float left = rays->left[lane], gain = 1;
+            if (left <= stop) { /* what was left would have been more of the same */
+                gain = 1 / (1 - left);
+                left = 0;
+            }
+            float *pixel = pixels + 4 * ((size_t)(tile->y_px + row) * (size_t)view->width_px +
+                                         (size_t)(tile->x_px + column));
+            const float *behind = canvas->rgb[row * tile->stride + column];
+            for (int c = 0; c < 3; c++)
+                pixel[c] = gain * rays->rgb[c][lane] + left * behind[c];
+            pixel[3] = 1 - left;
+        }
+}
+
+static void canvas_splat(struct canvas *canvas, const struct march_splat *splat)
+{
+    for (int k = 0; k < 4; k++) {
+        int x = splat->x_px + (k & 1) - canvas->tile.x_px;
+        int y = splat->y_px + (k >> 1) - canvas->tile.y_px;
+        if (x < 0 || y < 0 || x >= canvas->tile.width_px || y >= canvas->tile.height_px)
+            continue;
+        struct march_rays *rays =
+            &canvas->blocks[y / MARCH_BLOCK * canvas->across + x / MARCH_BLOCK];
+        int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
+        if (!(splat->depth_m < rays->depths_m[lane]))
+            continue;
+        float share = rays->left[lane] * splat->shares[k];
+        rays->left[lane] -= share;
+        for (int c = 0; c < 3; c++)
+            rays->rgb[c][lane] += share * splat->rgb[c];
+    }
+}
+
+static int block_clamp(int at, int across)
+{
+    return at < 0 ? 0 : at >= across ? across - 1 : at;
+}
+
+static void canvas_march(struct canvas *canvas, const struct march *march,
+                         const struct march_view *picture, const struct march_tree *tree,
+                         const struct march_seen *seen)
+{
+    const struct voxels *voxels = march->volumes[tree->species];
+    const float voxel_m = voxels->levels[seen->level].voxel_m;
+    const float half = 0.5f * (float)(canvas->tile.stride - 1);
+    const int from[2] = {canvas->tile.x_px, canvas->tile.y_px};
+    int low[2], high[2];
+    struct march_job job;
+    march_job_fill(picture, tree, voxels, seen->level, (float)from[0] + half, (float)from[1] + half,
+                   &job);
+    for (int i = 0; i < 2; i++) {
+        low[i] = block_clamp((seen->low[i] - from[i]) / MARCH_BLOCK, canvas->across);
+        high[i] = block_clamp((seen->high[i] - from[i]) / MARCH_BLOCK, canvas->across);
+    }
+    for (int y = low[1]; y <= high[1]; y++)
+        for (int x = low[0]; x <= high[0]; x++) {
+            int block = y * canvas->across + x;
+            if (!canvas->open[block])
+                continue;
+            march_job_aim(picture, tree, (float)(from[0] + x * MARCH_BLOCK),
+                          (float)(from[1] + y * MARCH_BLOCK), voxel_m, &job);
+            canvas->open[block] = march->block(&job, &canvas->blocks[block]);
+            canvas->open_count -= !canvas->open[block];
+        }
+}
+
+static void tile_draw(const struct march *march, const struct march_view *picture,
+                      const struct tiles *tiles, const struct cull_list *list, size_t tile,
+                      struct canvas *canvas, float *pixels)
+{
+    canvas_begin(canvas, march, tiles, picture->view, tile);
+    for (uint32_t at = march->tile_first[tile];
+         at < march->tile_first[tile + 1] && canvas->open_count; at++) {
+        uint32_t k = march->entries[at];
+        const struct march_tree *tree = &march->trees[list->instances[k]];
+        if (march->seen[k].level != MARCH_SPLAT) {
+            canvas_march(canvas, march, picture, tree, &march->seen[k]);
+            continue;
+        }
+        struct march_splat splat;
+        march_splat_of(picture, tree, march->volumes[tree->species], march->block, &splat);
+        canvas_splat(canvas, &splat);
+    }
+    canvas_end(canvas, march->options.stop, picture->view, pixels);
+}
+
+enum status march_draw(struct workspace *workspace, struct march *march, const struct view *view,
+                       struct target *target)
+{
+    const struct march_view picture = {
+        .view = view,
+        .scene = march->scene,
+        .rays = backdrop_rays_of(view),
+        .focal_px = cull_focal_px(view),
+        .effects = workspace->effects,
+        .options = march->options,
+    };
+    const struct tiles tiles = tiles_of(march, view);
+    backdrop_cpu_begin(workspace, march->backdrop, view);
+    struct cull_list list = cull_view(march->cull, view, CULL_FRONT_TO_BACK);
+    bin(workspace, march, &picture, &tiles, &list);
+#pragma omp parallel num_threads(workspace->threads)
+    {
+        struct canvas canvas;
+#pragma omp for schedule(dynamic, 1)
+        for (size_t tile = 0; tile < tiles.count; tile++)
+            tile_draw(march, &picture, &tiles, &list, tile, &canvas, target->pixels);
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,31 @@
+/* Forests marched through by rays on the CPU: voxels of each plant, tiles of the picture, packets
+ * of rays. Trees are sorted by depth; where crowns interlock, the nearer tree is drawn whole before
+ * the farther one. */
+#ifndef TREELINE_BAKE_MARCH_H
+#define TREELINE_BAKE_MARCH_H
+
+#include "method/method.h"
+
+struct march;
+
+enum march_model {
+    MARCH_SGGX,      /* hides and is lit by the second moments of its normals */
+    MARCH_ISOTROPIC, /* as if the normals in a voxel pointed everywhere alike */
+};
+
+struct march_options {
+    int resolution; /* voxels along a plant's longest extent */
+    enum march_model model;
+    float stop;      /* a ray ends when it lets through no more */
+    float step;      /* voxels */
+    float bias;      /* added to the level of detail */
+    int tile_px;     /* side of a tile */
+    const char *isa; /* a name of march_isas(); NULL: the last */
+};
+
+enum status march_prepare(struct workspace *workspace, const struct scene *scene,
+                          const struct march_options *options, struct march **march);
+enum status march_draw(struct workspace *workspace, struct march *march, const struct view *view,
+                       struct target *target);
+
+#endif

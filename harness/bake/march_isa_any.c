@@ -1,0 +1,8 @@
+/* The ray march's kernels on a machine without kernels of its own: plain C. */
+#include "bake/march_parts.h"
+
+size_t march_isas(struct march_isa isas[4])
+{
+    isas[0] = (struct march_isa){"plain", march_block_plain};
+    return 1;
+}

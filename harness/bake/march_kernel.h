@@ -1,0 +1,179 @@
+/* The ray march's kernel, written once over lanes (march_lanes_*.h, included before); every kernel
+ * does the same operations in the same order on each ray, so all give the same bits. */
+#ifndef TREELINE_BAKE_MARCH_KERNEL_H
+#define TREELINE_BAKE_MARCH_KERNEL_H
+
+#include "bake/march_parts.h"
+
+#include <string.h>
+
+static inline lanes lanes_load(const float *from)
+{
+    lanes loaded;
+    memcpy(&loaded, from, sizeof loaded);
+    return loaded;
+}
+
+static inline void lanes_store(float *to, lanes value)
+{
+    memcpy(to, &value, sizeof value);
+}
+
+static inline lanes lanes_all(float value)
+{
+    return value - (lanes){0};
+}
+
+static inline lanes lanes_clamp(lanes value, float low, float high)
+{
+    return lanes_min(lanes_max(value, lanes_all(low)), lanes_all(high));
+}
+
+/* exp(-x), x >= 0; relative error 4e-6. Splits x log2(e) into a whole number and at most a half. */
+static inline lanes lanes_fade(lanes x)
+{
+    const float round = 12582912; /* 1.5 x 2^23 */
+    lanes power = lanes_max(-1.44269504f * x, lanes_all(-126));
+    lanes whole = (power + round) - round, part = power - whole;
+    lanes value = 1 + part * (0.69312103f +
+                              part * (0.24022107f + part * (0.055922036f + part * 0.0096760370f)));
+    lanes_int scale = (lanes_truncate(whole) + 127) << 23;
+    lanes factor;
+    memcpy(&factor, &scale, sizeof factor);
+    return value * factor;
+}
+
+static inline lanes form_value(const struct march_form *form, const lanes entries[5])
+{
+    lanes value = form->factors[0] + entries[0] * form->factors[1];
+    for (int i = 1; i < 5; i++)
+        value += entries[i] * form->factors[i + 1];
+    return value;
+}
+
+static inline void matrix_entries(lanes_int bits, lanes entries[5])
+{
+    for (int i = 0; i < 5; i++)
+        entries[i] = lanes_of(bits >> (6 * i) & 63);
+}
+
+/* sqrt(1 - x x) + x asin(x) of x squared, 0..1; absolute error 1.2e-3. */
+static inline lanes arc_value(lanes x2)
+{
+    return 0.99953635f + x2 * (0.51276042f + x2 * (-0.0092389264f + x2 * 0.066520270f));
+}
+
+struct lanes_sample {
+    lanes depth;  /* optical, of a voxel's side */
+    lanes rgb[3]; /* radiance toward the eye */
+};
+
+/* The closures of voxels.h. */
+static inline struct lanes_sample sample_voxels(const struct march_job *job, lanes_int at,
+                                                lanes_mask mask)
+{
+    struct lanes_sample sample;
+    lanes_int words[4];
+    for (int i = 0; i < 4; i++)
+        words[i] = lanes_gather(job->voxels + i, at, mask);
+    lanes entries[5], extinction;
+    memcpy(&extinction, &words[0], sizeof extinction);
+    matrix_entries(words[1], entries);
+    lanes zero = lanes_all(0);
+    sample.depth = extinction * lanes_sqrt(lanes_max(form_value(&job->hidden, entries), zero));
+    matrix_entries(words[2], entries);
+    const float least = 1e-4f;
+    lanes seen = lanes_max(form_value(&job->seen, entries), lanes_all(least));
+    lanes lit = lanes_max(form_value(&job->lit, entries), lanes_all(least));
+    lanes toward = form_value(&job->both, entries) / lanes_sqrt(seen);
+    lanes_int color = words[3];
+    lanes evenness = 0.75f + lanes_of(color >> 24 & 15) * (1.0f / 60);
+    lanes one_sided =
+        lanes_max(lanes_of(color >> 28 & 15) * (1.0f / 15), lanes_all(job->one_sided));
+    lanes even =
+        0.63661977f * lanes_sqrt(lit) * arc_value(lanes_min(toward * toward / lit, lanes_all(1)));
+    lanes diffuse = lanes_max((even + 0.5f * one_sided * (toward - even)) / evenness, zero);
+    for (int c = 0; c < 3; c++)
+        sample.rgb[c] = lanes_of(color >> (8 * c) & 255) * (job->shade[c] + job->sun[c] * diffuse);
+    return sample;
+}
+
+/* Where rays enter and leave the level's box. */
+static inline void box_cut(const struct march_job *job, const lanes ray[3], lanes *from, lanes *to)
+{
+    for (int i = 0; i < 3; i++) {
+        lanes slow =
+            lanes_pick(lanes_less(ray[i] * ray[i], lanes_all(1e-20f)), lanes_all(1e-10f), ray[i]);
+        lanes low = -job->eye[i] / slow, high = ((float)job->size[i] - job->eye[i]) / slow;
+        *from = lanes_max(*from, lanes_min(low, high));
+        *to = lanes_min(*to, lanes_max(low, high));
+    }
+}
+
+static inline lanes_int cells_at(const struct march_job *job, const lanes ray[3], lanes middle,
+                                 lanes_mask alive)
+{
+    lanes_int at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = lanes_truncate(
+            lanes_clamp(job->eye[i] + middle * ray[i], 0, (float)job->size[i] - 0.5f));
+    lanes_int index = (at[2] * job->size[1] + at[1]) * job->size[0] + at[0];
+    return lanes_gather(job->cells, index, alive);
+}
+
+/* True when something may still be seen through one of the rays. */
+static inline bool march_lanes(const struct march_job *job, struct march_rays *rays, int first)
+{
+    static const float columns[MARCH_RAYS] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+    static const float rows[MARCH_RAYS] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+    lanes stop = lanes_all(job->stop), left = lanes_load(rays->left + first);
+    lanes_mask open = lanes_less(stop, left);
+    if (!lanes_any(open))
+        return false;
+    lanes ray[3], column = lanes_load(columns + first), row = lanes_load(rows + first);
+    lanes steepest = lanes_all(1e-10f);
+    for (int i = 0; i < 3; i++) {
+        ray[i] = job->first[i] + column * job->right[i] + row * job->down[i];
+        steepest = lanes_max(steepest, lanes_max(ray[i], -ray[i]));
+    }
+    lanes at = lanes_all(job->near_m), end = lanes_load(rays->depths_m + first);
+    box_cut(job, ray, &at, &end);
+    lanes_mask alive = lanes_both(lanes_less(at, end), open);
+    if (!lanes_any(alive))
+        return true;
+    lanes leap = 1 / steepest, step = lanes_all(job->step / job->speed);
+    lanes rgb[3];
+    for (int c = 0; c < 3; c++)
+        rgb[c] = lanes_load(rays->rgb[c] + first);
+    do {
+        lanes length = lanes_min(step, end - at), middle = at + 0.5f * length;
+        lanes_int cell = cells_at(job, ray, middle, alive);
+        lanes_int behind = cell - VOXELS_FIRST;
+        lanes_mask full = lanes_both(lanes_int_less((lanes_int){0} - 1, behind), alive);
+        if (lanes_any(full)) {
+            struct lanes_sample sample = sample_voxels(job, behind << 2, full);
+            lanes pass = lanes_fade(sample.depth * length * job->speed);
+            lanes share = lanes_pick(full, left - left * pass, lanes_all(0));
+            left -= share;
+            for (int c = 0; c < 3; c++)
+                rgb[c] += share * (job->fog[c] + job->clear * sample.rgb[c]);
+        }
+        lanes far = middle + lanes_of(cell - 1) * leap;
+        at = lanes_pick(full, at + step, lanes_max(at + step, far));
+        alive = lanes_both(lanes_both(lanes_less(at, end), lanes_less(stop, left)), alive);
+    } while (lanes_any(alive));
+    lanes_store(rays->left + first, left);
+    for (int c = 0; c < 3; c++)
+        lanes_store(rays->rgb[c] + first, rgb[c]);
+    return lanes_any(lanes_less(stop, left));
+}
+
+static inline bool march_all(const struct march_job *job, struct march_rays *rays)
+{
+    bool open = false;
+    for (int first = 0; first < MARCH_RAYS; first += LANES)
+        open |= march_lanes(job, rays, first);
+    return open;
+}
+
+#endif

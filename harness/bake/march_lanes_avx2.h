@@ -1,0 +1,65 @@
+/* Lanes of floats for the ray march by AVX2: eight at a time. */
+#ifndef TREELINE_BAKE_MARCH_LANES_AVX2_H
+#define TREELINE_BAKE_MARCH_LANES_AVX2_H
+
+#include <immintrin.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { LANES = 8 };
+typedef float lanes __attribute__((vector_size(32)));
+typedef int32_t lanes_int __attribute__((vector_size(32)));
+typedef int32_t lanes_mask __attribute__((vector_size(32))); /* 0 or -1 */
+
+static inline lanes_mask lanes_less(lanes a, lanes b)
+{
+    return (lanes_mask)_mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ);
+}
+static inline lanes_mask lanes_int_less(lanes_int a, lanes_int b)
+{
+    return (lanes_mask)(a < b);
+}
+static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
+{
+    return a & b;
+}
+static inline lanes lanes_pick(lanes_mask mask, lanes yes, lanes no)
+{
+    return (lanes)_mm256_blendv_ps((__m256)no, (__m256)yes, (__m256)mask);
+}
+static inline lanes_int lanes_int_pick(lanes_mask mask, lanes_int yes, lanes_int no)
+{
+    return (lanes_int)_mm256_blendv_epi8((__m256i)no, (__m256i)yes, (__m256i)mask);
+}
+static inline bool lanes_any(lanes_mask mask)
+{
+    return _mm256_movemask_ps((__m256)mask) != 0;
+}
+static inline lanes lanes_min(lanes a, lanes b)
+{
+    return (lanes)_mm256_min_ps((__m256)a, (__m256)b);
+}
+static inline lanes lanes_max(lanes a, lanes b)
+{
+    return (lanes)_mm256_max_ps((__m256)a, (__m256)b);
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    return (lanes)_mm256_sqrt_ps((__m256)a);
+}
+static inline lanes_int lanes_truncate(lanes a)
+{
+    return (lanes_int)_mm256_cvttps_epi32((__m256)a);
+}
+static inline lanes lanes_of(lanes_int a)
+{
+    return (lanes)_mm256_cvtepi32_ps((__m256i)a);
+}
+/* words[at], 0 where the mask is not set. */
+static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_mask mask)
+{
+    return (lanes_int)_mm256_mask_i32gather_epi32(_mm256_setzero_si256(), (const int *)words,
+                                                  (__m256i)at, (__m256i)mask, 4);
+}
+
+#endif

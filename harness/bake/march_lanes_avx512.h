@@ -1,0 +1,65 @@
+/* Lanes of floats for the ray march by AVX-512: sixteen at a time. */
+#ifndef TREELINE_BAKE_MARCH_LANES_AVX512_H
+#define TREELINE_BAKE_MARCH_LANES_AVX512_H
+
+#include <immintrin.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { LANES = 16 };
+typedef float lanes __attribute__((vector_size(64)));
+typedef int32_t lanes_int __attribute__((vector_size(64)));
+typedef __mmask16 lanes_mask;
+
+static inline lanes_mask lanes_less(lanes a, lanes b)
+{
+    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
+}
+static inline lanes_mask lanes_int_less(lanes_int a, lanes_int b)
+{
+    return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
+}
+static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
+{
+    return (lanes_mask)(a & b);
+}
+static inline lanes lanes_pick(lanes_mask mask, lanes yes, lanes no)
+{
+    return (lanes)_mm512_mask_blend_ps(mask, (__m512)no, (__m512)yes);
+}
+static inline lanes_int lanes_int_pick(lanes_mask mask, lanes_int yes, lanes_int no)
+{
+    return (lanes_int)_mm512_mask_blend_epi32(mask, (__m512i)no, (__m512i)yes);
+}
+static inline bool lanes_any(lanes_mask mask)
+{
+    return mask != 0;
+}
+static inline lanes lanes_min(lanes a, lanes b)
+{
+    return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
+}
+static inline lanes lanes_max(lanes a, lanes b)
+{
+    return (lanes)_mm512_max_ps((__m512)a, (__m512)b);
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    return (lanes)_mm512_sqrt_ps((__m512)a);
+}
+static inline lanes_int lanes_truncate(lanes a)
+{
+    return (lanes_int)_mm512_cvttps_epi32((__m512)a);
+}
+static inline lanes lanes_of(lanes_int a)
+{
+    return (lanes)_mm512_cvtepi32_ps((__m512i)a);
+}
+/* words[at], 0 where the mask is not set. */
+static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_mask mask)
+{
+    return (lanes_int)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)at,
+                                                  (const int *)words, 4);
+}
+
+#endif

@@ -1,0 +1,70 @@
+/* Lanes of floats for the ray march in plain C: four at a time, by the compiler's own vectors. */
+#ifndef TREELINE_BAKE_MARCH_LANES_PLAIN_H
+#define TREELINE_BAKE_MARCH_LANES_PLAIN_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { LANES = 4 };
+typedef float lanes __attribute__((vector_size(16)));
+typedef int32_t lanes_int __attribute__((vector_size(16)));
+typedef int32_t lanes_mask __attribute__((vector_size(16))); /* 0 or -1 */
+
+static inline lanes_mask lanes_less(lanes a, lanes b)
+{
+    return (lanes_mask)(a < b);
+}
+static inline lanes_mask lanes_int_less(lanes_int a, lanes_int b)
+{
+    return (lanes_mask)(a < b);
+}
+static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
+{
+    return a & b;
+}
+static inline lanes lanes_pick(lanes_mask mask, lanes yes, lanes no)
+{
+    return (lanes)((mask & (lanes_mask)yes) | (~mask & (lanes_mask)no));
+}
+static inline lanes_int lanes_int_pick(lanes_mask mask, lanes_int yes, lanes_int no)
+{
+    return (lanes_int)((mask & (lanes_mask)yes) | (~mask & (lanes_mask)no));
+}
+static inline bool lanes_any(lanes_mask mask)
+{
+    return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+static inline lanes lanes_min(lanes a, lanes b)
+{
+    return lanes_pick(lanes_less(a, b), a, b);
+}
+static inline lanes lanes_max(lanes a, lanes b)
+{
+    return lanes_pick(lanes_less(b, a), a, b);
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    lanes root;
+    for (int i = 0; i < LANES; i++)
+        root[i] = sqrtf(a[i]);
+    return root;
+}
+static inline lanes_int lanes_truncate(lanes a)
+{
+    return __builtin_convertvector(a, lanes_int);
+}
+static inline lanes lanes_of(lanes_int a)
+{
+    return __builtin_convertvector(a, lanes);
+}
+/* words[at], 0 where the mask is not set. */
+static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_mask mask)
+{
+    lanes_int got;
+    for (int i = 0; i < LANES; i++)
+        got[i] = mask[i] ? (int32_t)words[at[i]] : 0;
+    return got;
+}
+
+#endif

@@ -1,0 +1,50 @@
+/* What the ray march's kernels are given: 4 x 4 rays and a tree. */
+#ifndef TREELINE_BAKE_MARCH_PARTS_H
+#define TREELINE_BAKE_MARCH_PARTS_H
+
+#include "bake/voxels.h"
+
+enum { MARCH_BLOCK = 4, MARCH_RAYS = MARCH_BLOCK * MARCH_BLOCK };
+
+/* Front to back: what has been gathered, and how much is still seen behind it. */
+struct march_rays {
+    float left[MARCH_RAYS]; /* transmittance */
+    float rgb[3][MARCH_RAYS];
+    float depths_m[MARCH_RAYS]; /* of what is behind the trees, along the view */
+} __attribute__((aligned(64)));
+
+/* x' M y of a packed matrix: factors[0] + sum of its five entries of 6 bits, each by its factor. */
+struct march_form {
+    float factors[6];
+};
+
+/* A tree at one of its levels, seen through a block of pixels. Lengths in the level's voxels. */
+struct march_job {
+    const uint32_t *cells;
+    const uint32_t *voxels; /* four words each */
+    int32_t size[3];
+    float eye[3];
+    float first[3], right[3], down[3]; /* rays, a metre along the view */
+    float speed;                       /* length of a ray a metre along the view */
+    float near_m, step, stop;
+    struct march_form hidden;          /* w' S w */
+    struct march_form seen, lit, both; /* w' M w, l' M l, w' M l */
+    float sun[3], shade[3]; /* radiance of a white voxel's byte: by the sun, by the sky */
+    float one_sided;        /* 1: leaves are lit on the side of the sun alone */
+    float clear, fog[3];    /* the share that fog leaves; what it adds */
+};
+
+/* Marches a block's rays through a tree. False when nothing more can be seen through the block. */
+typedef bool march_block(const struct march_job *job, struct march_rays *rays);
+
+/* The kernels of this build, from the slowest to the fastest that this processor runs; the first is
+ * plain C. Same picture, to the bit. */
+struct march_isa {
+    const char *name;
+    march_block *block;
+};
+size_t march_isas(struct march_isa isas[4]);
+
+march_block march_block_plain, march_block_avx2, march_block_avx512;
+
+#endif

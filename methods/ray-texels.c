@@ -1,0 +1,61 @@
+/* ray-texels: rays marched through the plants' voxels on the CPU, front to back, in packets. */
+#include "bake/march.h"
+
+struct options {
+    int resolution, model, tile, isa;
+    float stop, step, bias;
+};
+
+/* clang-format off */
+static const struct option table[] = {
+    OPTION(struct options, resolution, 128, 1, 512, "", "voxels along a plant's longest extent"),
+    OPTION_WORD(struct options, model, 0, "sggx|isotropic",
+                "how leaves hide and are lit: by the second moments of their normals, or alike on all sides"),
+    OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
+    OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
+    OPTION(struct options, bias, 0.5, -4, 4, "", "added to the level of detail that a pixel asks for"),
+    OPTION(struct options, tile, 16, 8, 64, "px", "side of the tiles that trees are binned to"),
+    OPTION_WORD(struct options, isa, 0, "auto|plain|avx2|avx512",
+                "the processor's vectors; another set than it has is drawn with plain C"),
+    OPTION_END,
+};
+/* clang-format on */
+
+static enum status prepare(struct workspace *workspace, const struct scene *scene,
+                           const void *values, void **state)
+{
+    static const char *const isas[] = {NULL, "plain", "avx2", "avx512"};
+    const struct options *options = values;
+    /* the level of detail is the volumes' resolution */
+    int divisor = workspace->lod == LOD_LOW ? 4 : workspace->lod == LOD_INTERMEDIATE ? 2 : 1;
+    struct march_options march = {
+        .resolution = (options->resolution + divisor - 1) / divisor,
+        .model = (enum march_model)options->model,
+        .stop = options->stop,
+        .step = options->step,
+        .bias = options->bias,
+        .tile_px = options->tile,
+        .isa = isas[options->isa],
+    };
+    return march_prepare(workspace, scene, &march, (struct march **)state);
+}
+
+static enum status draw(struct workspace *workspace, void *state, const struct view *view,
+                        struct target *target)
+{
+    return march_draw(workspace, state, view, target);
+}
+
+extern const struct method ray_texels_method;
+const struct method ray_texels_method = {
+    .abi = METHOD_ABI,
+    .name = "ray-texels",
+    .summary = "rays marched through voxels of the plants, on the CPU",
+    .source = "Kajiya and Kay 1989, doi:10.1145/74334.74361; Neyret 1998, doi:10.1109/2945.675652; "
+              "Heitz et al. 2015, doi:10.1145/2766988; Senegas 2001",
+    .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .options = table,
+    .options_size = sizeof(struct options),
+    .prepare = prepare,
+    .draw = draw,
+};
