@@ -141,11 +141,12 @@ static inline struct view tree_view(const struct scene *scene, float azimuth_rad
     return view;
 }
 
-/* One picture in a context of its own. device_bytes and counters may be NULL. */
-static inline struct frame *tree_draw(struct arena *arena, const struct method *method,
-                                      const char *options, const struct scene *scene,
-                                      unsigned effects, const struct view *view,
-                                      struct gl_counters *counters)
+/* One picture in a context of its own. counters may be NULL. */
+static inline struct frame *tree_draw_as(struct arena *arena, const struct method *method,
+                                         const char *options, enum lod lod,
+                                         enum target_format format, const struct scene *scene,
+                                         unsigned effects, const struct view *view,
+                                         struct gl_counters *counters)
 {
     struct error error = {0};
     struct gl *gl;
@@ -155,16 +156,15 @@ static inline struct frame *tree_draw(struct arena *arena, const struct method *
                                   .gl = gl,
                                   .error = &error,
                                   .effects = effects,
-                                  .lod = LOD_HIGH,
-                                  .format = TARGET_RGBA32F,
+                                  .lod = lod,
+                                  .format = format,
                                   .threads = 2};
     void *values = arena_alloc(arena, 1, method->options_size), *state = NULL;
     struct target target;
     options_default(method->options, values);
     struct frame *frame = frame_create(arena, view->width_px, view->height_px, false);
     if (options_parse(method->options, options, values, &error) != STATUS_OK ||
-        gl_target(gl, view->width_px, view->height_px, TARGET_RGBA32F, &target, &error) !=
-            STATUS_OK ||
+        gl_target(gl, view->width_px, view->height_px, format, &target, &error) != STATUS_OK ||
         method->prepare(&workspace, scene, values, &state) != STATUS_OK)
         fail_msg("%s", error.text);
     gl_counters_reset(gl);
@@ -177,6 +177,15 @@ static inline struct frame *tree_draw(struct arena *arena, const struct method *
         fail_msg("%s", error.text);
     gl_context_destroy(gl);
     return frame;
+}
+
+static inline struct frame *tree_draw(struct arena *arena, const struct method *method,
+                                      const char *options, const struct scene *scene,
+                                      unsigned effects, const struct view *view,
+                                      struct gl_counters *counters)
+{
+    return tree_draw_as(arena, method, options, LOD_HIGH, TARGET_RGBA32F, scene, effects, view,
+                        counters);
 }
 
 static inline struct frame *tree_reference(struct arena *arena, const struct scene *scene,

@@ -1,0 +1,174 @@
+/* Drawing of forests as stacks of slices: programs, buffers, runs of trees. */
+#include "bake/stack_bake.h"
+
+#include "stack.glsl.h"
+
+#include <string.h>
+
+/* A batch is what is uploaded at a time. */
+enum { BATCH_PARTS = 1 << 16, BATCH_QUADS = 1 << 18, INDEXED_QUADS = 1 << 14, CORNERS = 4 };
+
+static GLuint upload_indices(struct gl *gl)
+{
+    static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3};
+    struct arena *scratch = arena_create(0);
+    uint32_t *indices = ARENA_ARRAY(scratch, uint32_t, 6 * INDEXED_QUADS);
+    for (uint32_t i = 0; i < 6 * INDEXED_QUADS; i++)
+        indices[i] = CORNERS * (i / 6) + corners[i % 6];
+    GLuint buffer = gl_buffer(gl, 6 * INDEXED_QUADS * sizeof *indices, indices, 0);
+    arena_destroy(scratch);
+    return buffer;
+}
+
+static enum status stack_program(struct workspace *workspace, struct stack *stack)
+{
+    const struct stack_request *request = &stack->request;
+    struct arena *scratch = arena_create(0);
+    const char *defines =
+        arena_printf(scratch, "%s%s%s%s%s%s", request->trilinear ? "TRILINEAR 1\n" : "",
+                     request->straight ? "STRAIGHT 1\n" : "", request->rough ? "ROUGH 1\n" : "",
+                     request->interpolate ? "INTERPOLATE 1\n" : "",
+                     request->interpolate || request->smooth ? "POWER 1\n" : "",
+                     workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
+    enum status status =
+        gl_program(workspace->gl, "stack", stack_glsl, defines, &stack->program, workspace->error);
+    arena_destroy(scratch);
+    return status;
+}
+
+enum status stack_prepare(struct workspace *workspace, const struct scene *scene,
+                          const struct stack_request *request, struct stack **result)
+{
+    struct gl *gl = workspace->gl;
+    struct arena *arena = workspace->arena;
+    struct stack *stack = *result = ARENA_NEW(arena, struct stack);
+    stack->scene = scene;
+    stack->request = *request;
+    enum status status = backdrop_prepare(workspace, scene, &stack->backdrop);
+    if (status == STATUS_OK)
+        status = stack_bake(workspace, stack);
+    if (status == STATUS_OK)
+        status = stack_program(workspace, stack);
+    if (status != STATUS_OK)
+        return status;
+    struct cull_bound *bounds = ARENA_ARRAY(arena, struct cull_bound, scene->species_count + 1);
+    for (size_t i = 0; i < scene->species_count; i++)
+        bounds[i] = stack->plants[i].bound;
+    stack->cull = cull_create(arena, scene, bounds);
+    stack->trees = ARENA_ARRAY(arena, struct stack_tree, BATCH_PARTS);
+    stack->quads = ARENA_ARRAY(arena, struct stack_quad, BATCH_QUADS);
+    stack->trees_buffer =
+        gl_buffer(gl, BATCH_PARTS * sizeof *stack->trees, NULL, GL_DYNAMIC_STORAGE_BIT);
+    stack->quads_buffer =
+        gl_buffer(gl, BATCH_QUADS * sizeof *stack->quads, NULL, GL_DYNAMIC_STORAGE_BIT);
+    stack->vertices = gl_vertex_array(gl);
+    gl->VertexArrayElementBuffer(stack->vertices, upload_indices(gl));
+    return gl_check(gl, "stacks", workspace->error);
+}
+
+static void use_program(struct workspace *workspace, const struct stack *stack,
+                        const struct view *view)
+{
+    struct gl *gl = workspace->gl;
+    gl->UseProgram(stack->program);
+    gl->BindVertexArray(stack->vertices);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, stack->trees_buffer);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, stack->quads_buffer);
+    shade_uniforms(workspace, stack->program, stack->scene, view);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gl->DepthMask(GL_FALSE);
+}
+
+/* Quads [first, first + count) of one texture array. */
+static void draw_run(struct workspace *workspace, const struct stack *stack, size_t index,
+                     size_t first, size_t count)
+{
+    struct gl *gl = workspace->gl;
+    const struct stack_array *array = &stack->arrays[index];
+    gl->BindTextureUnit(0, array->color);
+    gl->BindTextureUnit(1, array->normal);
+    gl->Uniform2f(gl_uniform(gl, stack->program, "layer_px"), (float)array->width_px,
+                  (float)array->height_px);
+    GLint where = gl_uniform(gl, stack->program, "first_quad");
+    for (size_t at = first, next, end = first + count; at < end; at = next) {
+        next = end - at < INDEXED_QUADS ? end : at + INDEXED_QUADS;
+        for (size_t i = at + 1; stack->request.each && i < next; i++)
+            if (stack->quads[i].tree != stack->quads[at].tree)
+                next = i;
+        gl->Uniform1i(where, (GLint)at);
+        gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)(6 * (next - at)), GL_UNSIGNED_INT, 0, 1, 0, 0);
+    }
+}
+
+/* What of a batch is filled. */
+struct fill {
+    size_t parts, quads;
+};
+
+/* One tree at the end of the batch. */
+static struct fill fill_tree(const struct stack *stack, const struct view *view, enum lod lod,
+                             const struct instance *instance, struct fill fill)
+{
+    struct stack_part parts[PARTS_MOST];
+    int count = stack_parts(stack, view, lod, instance, parts);
+    for (int k = 0; k < count; k++)
+        stack_tree_fill(stack, view, instance, &parts[k], &stack->trees[fill.parts + (size_t)k]);
+    for (int first = 0, end; first < count; first = end) {
+        for (end = first + 1; end < count && parts[end].side == parts[first].side;)
+            end++;
+        fill.quads += stack_quads(stack, parts + first, end - first, stack->trees + fill.parts,
+                                  (uint32_t)fill.parts, stack->quads + fill.quads);
+        fill.parts += (size_t)(end - first);
+    }
+    return fill;
+}
+
+static void draw_batch(struct workspace *workspace, const struct stack *stack, struct fill fill)
+{
+    struct gl *gl = workspace->gl;
+    if (fill.quads == 0)
+        return;
+    gl->NamedBufferSubData(stack->trees_buffer, 0, (GLsizeiptr)(fill.parts * sizeof *stack->trees),
+                           stack->trees);
+    gl->NamedBufferSubData(stack->quads_buffer, 0, (GLsizeiptr)(fill.quads * sizeof *stack->quads),
+                           stack->quads);
+    for (size_t first = 0, end; first < fill.quads; first = end) {
+        uint32_t array = stack->trees[stack->quads[first].tree].array;
+        for (end = first + 1;
+             end < fill.quads && stack->trees[stack->quads[end].tree].array == array;)
+            end++;
+        draw_run(workspace, stack, array, first, end - first);
+    }
+}
+
+enum status stack_draw(struct workspace *workspace, struct stack *stack, const struct view *view,
+                       struct target *target)
+{
+    struct gl *gl = workspace->gl;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    backdrop_draw(workspace, stack->backdrop, view);
+    gl->Flush(); /* a software GL fills the backdrop while the trees are culled and sorted */
+    struct cull_list list = cull_view(stack->cull, view, CULL_BACK_TO_FRONT);
+    struct fill fill = {0, 0};
+    use_program(workspace, stack, view);
+    for (size_t i = 0; i < list.count; i++) {
+        if (fill.parts + PARTS_MOST > BATCH_PARTS ||
+            fill.quads + PARTS_MOST * STACK_QUADS_MOST > BATCH_QUADS) {
+            draw_batch(workspace, stack, fill);
+            fill = (struct fill){0, 0};
+        }
+        fill = fill_tree(stack, view, workspace->lod, &stack->scene->instances[list.instances[i]],
+                         fill);
+    }
+    draw_batch(workspace, stack, fill);
+    gl->Disable(GL_BLEND);
+    gl->DepthMask(GL_TRUE);
+    gl->BindVertexArray(0);
+    gl->UseProgram(0);
+    for (GLuint i = 0; i < 2; i++) {
+        gl->BindTextureUnit(i, 0);
+        gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
+    }
+    return gl_check(gl, "stacks", workspace->error);
+}

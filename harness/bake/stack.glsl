@@ -1,0 +1,120 @@
+// Slices of trees as quads (harness/bake/stack.h). TRILINEAR, STRAIGHT, ROUGH, INTERPOLATE, POWER, FOG: as stack_request
+// and the scene have them.
+
+#pragma stage vertex
+struct tree {
+    vec4 base_layer;   // struct stack_tree of stack_bake.h
+    vec4 u_step, v_count, w_level;
+    vec4 leaf_power, bark_albedo;
+    uvec4 array;
+};
+layout(std430, binding = 0) readonly buffer trees_buffer { tree trees[]; };
+
+flat out float level;
+flat out vec3 leaf_light, bark_light;
+flat out vec2 power_albedo;
+#ifdef FOG
+out vec3 away_m;
+#endif
+
+struct quad {
+    uint tree;
+    float slice;
+    uint low, high;  // left, bottom; right, top: half texels plus 1, 16 bits each
+};
+layout(std430, binding = 1) readonly buffer quads_buffer { quad quads[]; };
+uniform int first_quad;
+uniform vec2 layer_px;
+out vec3 place;  // texture coordinates, layer
+
+void main()
+{
+    quad q = quads[first_quad + gl_VertexID / 4];
+    tree t = trees[q.tree];
+    int corner = gl_VertexID & 3;
+    uvec2 texels = uvec2(corner == 1 || corner == 2 ? q.high & 0xffffu : q.low & 0xffffu,
+                         corner >= 2 ? q.high >> 16 : q.low >> 16);
+    vec2 at = (vec2(texels) - 1.0) * 0.5 / layer_px;
+    vec3 world = t.base_layer.xyz + at.x * t.u_step.xyz + at.y * t.v_count.xyz + (q.slice + 0.5) * t.w_level.xyz;
+    place = vec3(at, t.base_layer.w + t.u_step.w * q.slice);
+#ifdef FOG
+    away_m = world - eye_m;
+#endif
+    gl_Position = view_projection * vec4(world, 1.0);
+    level = t.w_level.w;
+    leaf_light = t.leaf_power.xyz;
+    bark_light = t.bark_albedo.xyz;
+    power_albedo = vec2(t.leaf_power.w, t.bark_albedo.w);
+}
+
+#pragma stage fragment
+layout(binding = 0) uniform sampler2DArray color_map;   // albedo x coverage (STRAIGHT: albedo), coverage
+layout(binding = 1) uniform sampler2DArray normal_map;  // 128 is 0; share of leaf
+flat in float level;
+flat in vec3 leaf_light, bark_light;
+flat in vec2 power_albedo;
+#ifdef FOG
+in vec3 away_m;
+#endif
+in vec3 place;
+layout(location = 0) out vec4 color;
+
+#ifdef TRILINEAR
+#define FETCH(map, at) texture(map, at)
+#else
+#define FETCH(map, at) textureLod(map, at, level)
+#endif
+
+// Of a texel at a slice between two: INTERPOLATE mixes them (Rezk-Salama et al. 2000).
+vec4 fetch_color(vec3 at)
+{
+#ifdef INTERPOLATE
+    vec3 below = vec3(at.xy, floor(at.z));
+    vec4 texel = mix(FETCH(color_map, below), FETCH(color_map, below + vec3(0.0, 0.0, 1.0)), at.z - below.z);
+#else
+    vec4 texel = FETCH(color_map, at);
+#endif
+#ifdef STRAIGHT
+    texel.rgb *= texel.a;
+#endif
+    return texel;
+}
+
+vec4 fetch_normal(vec3 at)
+{
+#ifdef INTERPOLATE
+    vec3 below = vec3(at.xy, floor(at.z));
+    vec4 texel = mix(FETCH(normal_map, below), FETCH(normal_map, below + vec3(0.0, 0.0, 1.0)), at.z - below.z);
+#else
+    vec4 texel = FETCH(normal_map, at);
+#endif
+    return vec4(texel.xyz * (255.0 / 127.0) - 128.0 / 127.0, texel.w);
+}
+
+// Mean of |N.L| (two-sided leaves) or max(0, N.L) over the normals of a texel, of which the mean n is known. ROUGH: the
+// square of N.L has the mean (n.L)^2 + (1 - n.n) / 4.5, which is right where all N are n and where they lie on all
+// sides of a hemisphere; max(0, x) = (x + |x|) / 2.
+float light_of(vec4 n)
+{
+    float along = dot(n.xyz, mix(bark_light, leaf_light, n.w));
+#ifdef ROUGH
+    float size = sqrt(along * along + max(1.0 - dot(n.xyz, n.xyz), 0.0) / 4.5);
+#else
+    float size = abs(along);
+#endif
+    return mix(0.5 * (along + size), size, two_sided ? n.w : 0.0);
+}
+
+void main()
+{
+    vec4 texel = fetch_color(place);
+#ifdef POWER
+    // the last 1/256 of transmittance is kept, so that what is opaque can fade, too
+    float thin = 1.0 - pow(1.0 - min(texel.a, 0.996), power_albedo.x);
+    texel *= thin / max(min(texel.a, 0.996), 1e-6);
+#endif
+    color = vec4(texel.rgb * (light_of(fetch_normal(place)) * sun_radiance + ambient) * power_albedo.y, texel.a);
+#ifdef FOG
+    color.rgb = mix(fog_color * color.a, color.rgb, exp(-fog_density * length(away_m)));
+#endif
+}

@@ -1,0 +1,82 @@
+/* Forests drawn as stacks of slices with OpenGL: textures, choice of stack and number of slices for
+ * each tree, drawing. Senegas 2001; Meyer and Neyret 1998, doi:10.1007/978-3-7091-6453-2_15;
+ * Rezk-Salama et al. 2000, doi:10.1145/346876.348238 (interpolated slices).
+ *
+ * A tree is drawn by the stack that most faces the eye, its slices as quads that OpenGL blends,
+ * back to front. Following all slices along a ray in one fragment was tried and left: the same
+ * picture took 24 ms for one slice a tree instead of 9 (1,000 poplars, llvmpipe). */
+#ifndef TREELINE_BAKE_STACK_H
+#define TREELINE_BAKE_STACK_H
+
+#include "bake/backdrop.h"
+#include "bake/cull.h"
+#include "bake/slices.h"
+
+struct stack_request {
+    struct slices_request bake; /* width_px and height_px: 0, made from resolution_px */
+    int resolution_px;          /* texels along a picture's longer side */
+    bool square;                /* as many along the other one; else texels are about square */
+    bool straight;              /* colours are filtered without their coverage */
+    bool dilate;                /* empty texels get their neighbours' colour and normal */
+    bool unit;                  /* normals get length 1 after filtering */
+    bool trilinear;             /* else the nearest mip level, chosen a tree */
+    bool rectangles;            /* quads hold only the occupied rectangle of a slice */
+    bool each;                  /* one draw a tree */
+    bool rough;                 /* normals that scatter in a texel spread its light */
+    bool interpolate;           /* more slices than there are, between two each */
+    bool smooth;                /* no jump between numbers of slices and between stacks */
+    float criterion_px;         /* C2: parallax between two slices, px; 0: all slices */
+    float texel_px;             /* mip level: a texel is at most this many pixels and 0.7 of it */
+};
+
+/* Every level halves the number of slices of the one before. */
+enum { STACK_LEVELS = 10 };
+
+/* A stack of one plant at one number of slices. */
+struct stack_level {
+    int count;
+    float low_m, high_m;  /* of the box along toward */
+    int layer[2];         /* the hindmost slice's; 1: as fused from behind */
+    struct slice *slices; /* count */
+};
+
+struct stack_side {
+    struct slices_stack frame;
+    size_t array; /* textures */
+    int levels_count;
+    struct stack_level levels[STACK_LEVELS];
+};
+
+struct stack_plant {
+    struct stack_side *sides;    /* directions_count */
+    float albedo_scale, texel_m; /* a texel's size */
+    struct cull_bound bound;
+};
+
+struct stack_array {
+    GLuint color, normal;
+    int width_px, height_px, layers, levels;
+};
+
+struct stack {
+    const struct scene *scene;
+    struct stack_request request;
+    size_t plants_count, arrays_count;
+    struct stack_plant *plants;
+    struct stack_array *arrays;
+    struct backdrop *backdrop;
+    struct cull *cull;
+    GLuint program, vertices, trees_buffer, quads_buffer;
+    struct stack_tree *trees; /* stack_bake.h: the parts of one batch */
+    struct stack_quad *quads; /* theirs */
+};
+
+/* Bakes or finds the slices of every species, makes textures, programs, buffers. */
+enum status stack_prepare(struct workspace *workspace, const struct scene *scene,
+                          const struct stack_request *request, struct stack **stack);
+
+/* Backdrop and forest. */
+enum status stack_draw(struct workspace *workspace, struct stack *stack, const struct view *view,
+                       struct target *target);
+
+#endif

@@ -1,0 +1,262 @@
+/* Slices of every species, at every number of them, in texture arrays. */
+#include "bake/stack_bake.h"
+
+#include <string.h>
+
+/* Layers of one texture array, as OpenGL 4.5 promises them. */
+enum { LAYERS_MOST = 2048 };
+
+/* The slices of one stack: [0] as seen from the front, [1] from behind, level by level. */
+struct pyramid {
+    int levels;
+    const struct slices *slices[STACK_LEVELS][2];
+};
+
+static int texels_of(float extent_m, float texel_m)
+{
+    int texels = (int)ceilf(extent_m / texel_m / 8) * 8;
+    return texels < 8 ? 8 : texels > SLICES_MOST ? SLICES_MOST : texels;
+}
+
+/* Texels of a picture; the box is found with a stack of one texel. */
+static enum status size_of(struct workspace *workspace, struct arena *scratch, struct plant *plant,
+                           const struct stack_request *request, float *longest_m,
+                           struct slices_request *bake)
+{
+    struct slices_request small = *bake;
+    const struct slices *box;
+    small.width_px = small.height_px = small.count = small.samples = 1;
+    enum status status =
+        slices_create(scratch, plant, &small, workspace->threads, &box, workspace->error);
+    if (status != STATUS_OK)
+        return status;
+    float longest = 0, extent[2] = {0, 0};
+    for (size_t d = 0; d < bake->directions_count; d++)
+        for (int axis = 0; axis < 2; axis++) {
+            extent[axis] = box->stacks[d].high_m[axis] - box->stacks[d].low_m[axis];
+            longest = fmaxf(longest, extent[axis]);
+        }
+    if (!(*longest_m > 0))
+        *longest_m = fmaxf(longest, 1e-12f);
+    float texel_m = *longest_m / (float)request->resolution_px;
+    bake->width_px = request->square ? request->resolution_px : texels_of(extent[0], texel_m);
+    bake->height_px = request->square ? request->resolution_px : texels_of(extent[1], texel_m);
+    return STATUS_OK;
+}
+
+/* All numbers of slices of one direction. */
+static enum status pyramid_create(struct workspace *workspace, struct arena *scratch,
+                                  struct plant *plant, const struct slices_request *bake,
+                                  struct pyramid *pyramid)
+{
+    enum status status = slices_create(scratch, plant, bake, workspace->threads,
+                                       &pyramid->slices[0][0], workspace->error);
+    if (status != STATUS_OK)
+        return status;
+    pyramid->slices[0][1] = pyramid->slices[0][0];
+    pyramid->levels = 1;
+    while (pyramid->levels < STACK_LEVELS && pyramid->slices[pyramid->levels - 1][0]->count > 1) {
+        for (int behind = 0; behind < 2; behind++)
+            pyramid->slices[pyramid->levels][behind] =
+                slices_fused(scratch, pyramid->slices[pyramid->levels - 1][behind], behind);
+        pyramid->levels++;
+    }
+    return STATUS_OK;
+}
+
+/* The array of a size with room for the layers; a new one where there is none. */
+static size_t array_find(struct stack *stack, int width_px, int height_px, int layers)
+{
+    for (size_t i = 0; i < stack->arrays_count; i++) {
+        struct stack_array *array = &stack->arrays[i];
+        if (array->width_px == width_px && array->height_px == height_px &&
+            array->layers + layers <= LAYERS_MOST)
+            return i;
+    }
+    struct stack_array *made = &stack->arrays[stack->arrays_count];
+    made->width_px = width_px;
+    made->height_px = height_px;
+    for (int side = width_px > height_px ? width_px : height_px; side > 0; side /= 2)
+        made->levels++;
+    return stack->arrays_count++;
+}
+
+/* What the drawing must know of a stack, and places for its layers. */
+static void side_plan(struct arena *arena, struct stack *stack, const struct pyramid *pyramid,
+                      struct stack_side *side)
+{
+    const struct slices *finest = pyramid->slices[0][0];
+    int layers = finest->count, at;
+    for (int l = 1; l < pyramid->levels; l++)
+        layers += 2 * pyramid->slices[l][0]->count;
+    side->frame = finest->stacks[0];
+    side->levels_count = pyramid->levels;
+    side->array = array_find(stack, finest->width_px, finest->height_px, layers);
+    at = stack->arrays[side->array].layers;
+    stack->arrays[side->array].layers += layers;
+    for (int l = 0; l < pyramid->levels; l++) {
+        const struct slices *slices = pyramid->slices[l][0];
+        struct stack_level *level = &side->levels[l];
+        level->count = slices->count;
+        level->low_m = slices->stacks[0].low_m[2];
+        level->high_m = slices->stacks[0].high_m[2];
+        level->slices = ARENA_ARRAY(arena, struct slice, (size_t)slices->count);
+        memcpy(level->slices, slices->slices, (size_t)slices->count * sizeof *slices->slices);
+        for (int behind = 0; behind < 2; behind++) {
+            level->layer[behind] = at;
+            at += l > 0 || behind ? slices->count : 0;
+        }
+    }
+}
+
+/* Room for one slice: values of this mip level and the next, bytes. */
+struct page {
+    float *texels, *half;
+    uint8_t (*color)[4], (*normal)[4], (*spare)[4];
+};
+
+/* Colours that carry their coverage stay 0 where there is none: only normals are dilated then. */
+static void page_encode(const struct stack_request *request, struct page *page, int width_px,
+                        int height_px)
+{
+    size_t count = (size_t)width_px * (size_t)height_px;
+    slices_encode(page->texels, count, request->straight, request->unit, page->color, page->normal);
+    if (!request->dilate)
+        return;
+    memcpy(page->spare, page->color, count * sizeof *page->color);
+    slices_dilate(request->straight ? page->color : page->spare, page->normal, width_px, height_px,
+                  2);
+}
+
+/* One slice and its mip levels into a layer. */
+static void slice_upload(struct workspace *workspace, const struct stack *stack,
+                         const struct stack_array *array, const struct slices *slices, int slice,
+                         int layer, struct page *page)
+{
+    struct gl *gl = workspace->gl;
+    int width = array->width_px, height = array->height_px;
+    slices_expand(slices, 0, slice, page->texels);
+    for (int level = 0; level < array->levels; level++) {
+        page_encode(&stack->request, page, width, height);
+        gl->TextureSubImage3D(array->color, level, 0, 0, layer, width, height, 1, GL_RGBA,
+                              GL_UNSIGNED_BYTE, page->color);
+        gl->TextureSubImage3D(array->normal, level, 0, 0, layer, width, height, 1, GL_RGBA,
+                              GL_UNSIGNED_BYTE, page->normal);
+        slices_halve(page->texels, width, height, page->half);
+        float *swap = page->texels;
+        page->texels = page->half;
+        page->half = swap;
+        width = width > 1 ? width / 2 : 1;
+        height = height > 1 ? height / 2 : 1;
+    }
+}
+
+static void side_upload(struct workspace *workspace, const struct stack *stack,
+                        const struct pyramid *pyramid, const struct stack_side *side)
+{
+    struct arena *scratch = arena_create(0);
+    const struct stack_array *array = &stack->arrays[side->array];
+    size_t texels = (size_t)array->width_px * (size_t)array->height_px;
+    struct page page = {ARENA_ARRAY(scratch, float, texels *SLICES_FLOATS),
+                        ARENA_ARRAY(scratch, float, texels *SLICES_FLOATS),
+                        arena_alloc(scratch, texels, 4), arena_alloc(scratch, texels, 4),
+                        arena_alloc(scratch, texels, 4)};
+    for (int l = 0; l < pyramid->levels; l++)
+        for (int behind = 0; behind < (l ? 2 : 1); behind++)
+            for (int k = 0; k < side->levels[l].count; k++)
+                slice_upload(workspace, stack, array, pyramid->slices[l][behind], k,
+                             side->levels[l].layer[behind] + k, &page);
+    arena_destroy(scratch);
+}
+
+static void array_create(struct gl *gl, bool trilinear, struct stack_array *array)
+{
+    GLuint *textures[2] = {&array->color, &array->normal};
+    for (int i = 0; i < 2; i++) {
+        *textures[i] = gl_texture(gl, GL_TEXTURE_2D_ARRAY, array->levels, GL_RGBA8, array->width_px,
+                                  array->height_px, array->layers);
+        gl->TextureParameteri(*textures[i], GL_TEXTURE_MIN_FILTER,
+                              trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST);
+        gl->TextureParameteri(*textures[i], GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        gl->TextureParameteri(*textures[i], GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        gl->TextureParameteri(*textures[i], GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
+}
+
+/* A sphere about the plant's axis that holds all boxes. */
+static struct cull_bound bound_of(const struct stack_plant *plant, size_t sides)
+{
+    float low = INFINITY, high = -INFINITY, across = 0;
+    for (size_t d = 0; d < sides; d++)
+        for (int corner = 0; corner < 8; corner++) {
+            const struct slices_stack *box = &plant->sides[d].frame;
+            float a = corner & 1 ? box->high_m[0] : box->low_m[0];
+            float b = corner & 2 ? box->high_m[1] : box->low_m[1];
+            float c = corner & 4 ? box->high_m[2] : box->low_m[2], p[3];
+            for (int i = 0; i < 3; i++)
+                p[i] = a * box->right[i] + b * box->up[i] + c * box->toward[i];
+            low = fminf(low, p[1]);
+            high = fmaxf(high, p[1]);
+            across = fmaxf(across, hypotf(p[0], p[2]));
+        }
+    return (struct cull_bound){0.5f * (low + high), hypotf(across, 0.5f * (high - low))};
+}
+
+static enum status plant_bake(struct workspace *workspace, struct arena *scratch,
+                              struct stack *stack, struct plant *plant, struct stack_plant *made,
+                              struct pyramid *pyramids)
+{
+    const struct slices_request *all = &stack->request.bake;
+    float longest_m = 0;
+    enum status status = STATUS_OK;
+    made->sides = ARENA_ARRAY(workspace->arena, struct stack_side, all->directions_count);
+    struct slices_request whole = *all;
+    status = size_of(workspace, scratch, plant, &stack->request, &longest_m, &whole);
+    for (size_t d = 0; d < all->directions_count && status == STATUS_OK; d++) {
+        struct slices_request one = *all;
+        one.directions_count = 1;
+        one.directions = all->directions + d;
+        status = size_of(workspace, scratch, plant, &stack->request, &longest_m, &one);
+        if (status == STATUS_OK)
+            status = pyramid_create(workspace, scratch, plant, &one, &pyramids[d]);
+        if (status == STATUS_OK)
+            side_plan(workspace->arena, stack, &pyramids[d], &made->sides[d]);
+    }
+    if (status != STATUS_OK)
+        return status;
+    made->texel_m = longest_m / (float)stack->request.resolution_px;
+    made->albedo_scale = pyramids[0].slices[0][0]->albedo_scale;
+    made->bound = bound_of(made, all->directions_count);
+    return STATUS_OK;
+}
+
+static bool has_trees(const struct scene *scene, size_t species)
+{
+    for (size_t i = 0; i < scene->instances_count; i++)
+        if (scene->instances[i].species == species)
+            return true;
+    return false;
+}
+
+enum status stack_bake(struct workspace *workspace, struct stack *stack)
+{
+    struct arena *scratch = arena_create(0);
+    const struct scene *scene = stack->scene;
+    size_t sides = stack->request.bake.directions_count;
+    enum status status = STATUS_OK;
+    stack->plants_count = scene->species_count;
+    stack->plants = ARENA_ARRAY(workspace->arena, struct stack_plant, scene->species_count);
+    stack->arrays = ARENA_ARRAY(workspace->arena, struct stack_array, scene->species_count * sides);
+    struct pyramid *pyramids = ARENA_ARRAY(scratch, struct pyramid, scene->species_count * sides);
+    for (size_t i = 0; i < scene->species_count && status == STATUS_OK; i++)
+        if (has_trees(scene, i))
+            status = plant_bake(workspace, scratch, stack, scene->species[i].plant,
+                                &stack->plants[i], pyramids + i * sides);
+    for (size_t i = 0; i < stack->arrays_count && status == STATUS_OK; i++)
+        array_create(workspace->gl, stack->request.trilinear, &stack->arrays[i]);
+    for (size_t i = 0; i < scene->species_count * sides && status == STATUS_OK; i++)
+        if (stack->plants[i / sides].sides)
+            side_upload(workspace, stack, &pyramids[i], &stack->plants[i / sides].sides[i % sides]);
+    arena_destroy(scratch);
+    return status == STATUS_OK ? gl_check(workspace->gl, "slices", workspace->error) : status;
+}

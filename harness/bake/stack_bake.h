@@ -1,0 +1,57 @@
+/* What stack.c and its neighbours share; methods include stack.h. */
+#ifndef TREELINE_BAKE_STACK_BAKE_H
+#define TREELINE_BAKE_STACK_BAKE_H
+
+#include "bake/stack.h"
+
+/* Fills stack->plants and stack->arrays: slices at every number of them, as textures. */
+enum status stack_bake(struct workspace *workspace, struct stack *stack);
+
+enum { STACK_BAND = 4 }; /* 1 / the part of an octave, or of a cosine, in which two change */
+
+/* A tree's stack as stack.glsl reads it. Slice 0 is the nearest to the eye. */
+struct stack_tree {
+    float base_m[3], layer; /* world: texture coordinates 0, 0 of the front; layer of slice 0 */
+    float u_m[3], step;     /* along the picture's width; to the next slice's layer */
+    float v_m[3], count;    /* along its height; slices */
+    float w_m[3], level;    /* to the next slice; mip level */
+    float leaf_light[3];    /* plant's space: toward the sun */
+    float power;            /* of each slice's transmittance */
+    float bark_light[3], albedo_scale;
+    uint32_t array, unused[3]; /* textures */
+};
+
+struct stack_quad {
+    uint32_t tree;
+    float slice;      /* 0: the nearest; between two it is interpolated */
+    uint16_t rect[4]; /* left, bottom, right, top: half texels plus 1 */
+};
+
+/* A stack that shows a tree, or a share of it while two change places. */
+struct stack_part {
+    const struct stack_side *side;
+    const struct stack_level *level;
+    bool behind;
+    float share;      /* of the tree's optical depth */
+    float drawn;      /* slices; more than the level's are interpolated */
+    float distance_m; /* of the eye, plant's scale */
+};
+
+/* The parts of a tree, at most PARTS_MOST; those of a side follow each other, the more facing side
+ * comes last. */
+enum { PARTS_MOST = 4 };
+int stack_parts(const struct stack *stack, const struct view *view, enum lod lod,
+                const struct instance *instance, struct stack_part *parts);
+
+/* What the shader needs of a part. */
+void stack_tree_fill(const struct stack *stack, const struct view *view,
+                     const struct instance *instance, const struct stack_part *part,
+                     struct stack_tree *tree);
+
+/* Quads of a run of count parts of one side, farthest first; part i is tree first_tree + i. Returns
+ * how many: at most STACK_QUADS_MOST. */
+enum { STACK_DENSER = 4, STACK_QUADS_MOST = 2 * STACK_DENSER * SLICES_MOST };
+size_t stack_quads(const struct stack *stack, const struct stack_part *parts, int count,
+                   const struct stack_tree *trees, uint32_t first_tree, struct stack_quad *quads);
+
+#endif
