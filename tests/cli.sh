@@ -126,13 +126,13 @@ try run "${good[@]}" "${fast[@]}" --rounds 2 --out "$work/run"
 is 'a run succeeds' $rc -eq 0
 is 'its table is on stdout' "$(grep -c 'tiny/null/trees=1.* ok' "$work/out")" -eq 1
 is 'its notes are on stderr' "$(grep -c 'repetitions of 1 cell' "$work/err")" -eq 1
-is 'one line for the run and one for each repetition' "$(lines "$work/run/cells.jsonl")" -eq 3
+is 'one line for the run and one for each repetition' "$(told "$work/run/cells.jsonl")" -eq 3
 refuses 'a folder with a run is not mixed' 64 '--resume' run "${good[@]}" "${fast[@]}" --out "$work/run" -q
 try run "${good[@]}" "${fast[@]}" --rounds 2 --out "$work/run" --resume -q
-is 'nothing is left to resume' $rc -eq 0 -a "$(lines "$work/run/cells.jsonl")" -eq 3
+is 'nothing is left to resume' $rc -eq 0 -a "$(told "$work/run/cells.jsonl")" -eq 3
 refuses 'other measuring is not mixed in' 65 'frame_seconds: was measured with 0.02; 1 ' run "${good[@]}" --reference-error 0.1 --out "$work/run" --resume -q
 try run "${good[@]}" "${fast[@]}" --rounds 3 --out "$work/run/" --resume -q --json
-is 'more rounds are only the new ones' $rc -eq 0 -a "$(lines "$work/run/cells.jsonl")" -eq 4
+is 'more rounds are only the new ones' $rc -eq 0 -a "$(told "$work/run/cells.jsonl")" -eq 4
 is 'quiet is quiet' ! -s "$work/err"
 (cd "$work" && "$binary" run --out run --resume "${good[@]}" "${fast[@]}" --rounds 3 --json --report -q >out 2>page)
 is 'the path of the page is not among the JSON' "$(cat "$work/page")" = reports/run/index.html
@@ -153,7 +153,7 @@ try run "${good[@]}" "${once[@]}" --rounds 1 --target rgba8,rgba16f --out "$work
 is 'a run calibrates once a target format' "$(grep -c '"kind":"treeline-calibration"' "$work/limits/cells.jsonl")" -eq 2
 try run "${good[@]}" "${once[@]}" --rounds 2 --target rgba8,rgba16f --out "$work/limits" --resume
 is 'a resumed run does not calibrate again' "$(grep -c '"kind":"treeline-calibration"' "$work/limits/cells.jsonl")" -eq 2
-is 'its results are all there' "$(lines "$work/limits/cells.jsonl")" -eq 7
+is 'its results are all there' "$(told "$work/limits/cells.jsonl")" -eq 7
 try calibrate --seconds 0.05 --size 128x128 --threads 1
 is 'calibrate prints a row for each kind of work' $rc -eq 0 -a "$(grep -cE '^[a-z_0-9]+ +[0-9.e+]+ ' "$work/out")" -eq 21
 try calibrate --seconds 0.05 --size 128x128 --json
@@ -165,12 +165,12 @@ refuses 'a target that is none' 64 "--target: 'rgb' is not one of" calibrate --t
 # 4. Cells that fail are results.
 try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q
 is 'failed cells end in 77' $rc -eq 77
-is 'all of them are in the file' "$(lines "$work/fails/cells.jsonl")" -eq 5
+is 'all of them are in the file' "$(told "$work/fails/cells.jsonl")" -eq 5
 is 'a crash is called a crash' "$(grep -c '"status":"crash"' "$work/fails/cells.jsonl")" -eq 2
 try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q --resume
-is 'resuming keeps failures' "$(lines "$work/fails/cells.jsonl")" -eq 5
+is 'resuming keeps failures' "$(told "$work/fails/cells.jsonl")" -eq 5
 try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q --resume --retry
-is '--retry runs them again' "$(lines "$work/fails/cells.jsonl")" -eq 8
+is '--retry runs them again' "$(told "$work/fails/cells.jsonl")" -eq 8
 try run --scene tiny --method "$plugins/bad.so:way=hang" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --timeout 0.5 --out "$work/hang" -q
 is 'a timeout is a result' "$(grep -c '"status":"timeout"' "$work/hang/cells.jsonl")" -eq 1
 "$binary" report "$work/hang" --out "$work/hang-page" -q
@@ -187,13 +187,13 @@ is 'a shell reads the stored command back' "$(printf '%s\n' "$@" | grep -cxF -- 
 slow=(--scene tiny --method "$plugins/bad.so:way=slow" --trees 1 --size 32x24,33x24,34x24 --frame-seconds 0.2
   --views 1 --rounds 3 --reference-error 0.1 --reference-samples 16 --no-calibrate)
 # wait_lines FILE N: until the file has N lines, 60 s at most
-wait_lines() { for _ in $(seq 600); do [ -f "$1" ] && [ "$(lines "$1")" -ge "$2" ] && return; sleep 0.1; done; }
+wait_lines() { for _ in $(seq 600); do [ -f "$1" ] && [ "$(told "$1")" -ge "$2" ] && return; sleep 0.1; done; }
 # finish NAME DIR: resumes, and checks that each (cell, repetition) stands once
 finish() {
   try run "${slow[@]}" --out "$2" -q --resume
   python3 - "$2/cells.jsonl" <<'P' >"$work/py" 2>&1
 import json, sys
-rows = [json.loads(l) for l in open(sys.argv[1])][1:]
+rows = [r for r in map(json.loads, open(sys.argv[1])) if "cell" in r]
 keys = [(r["cell"], r["repetition"]) for r in rows]
 assert len(keys) == len(set(keys)) == 9, keys
 assert all(r["status"] == "ok" for r in rows)
@@ -205,14 +205,14 @@ for signal in INT TERM; do
   "$binary" run "${slow[@]}" --out "$dir" -q >"$work/out" 2>"$work/err" &
   pid=$!
   wait_lines "$dir/cells.jsonl" 3
-  before=$(lines "$dir/cells.jsonl")
+  before=$(told "$dir/cells.jsonl")
   start=$SECONDS
   kill -$signal $pid
   wait $pid; rc=$?
   is "SIG$signal ends in 130" $rc -eq 130
   is "SIG$signal ends soon" $((SECONDS - start)) -le 3
   is "SIG$signal is told in one line that names --resume" "$(grep -c -- '--resume' "$work/err")" -eq 1
-  is "SIG$signal loses no finished repetition" "$(lines "$dir/cells.jsonl")" -ge "$before"
+  is "SIG$signal loses no finished repetition" "$(told "$dir/cells.jsonl")" -ge "$before"
   is "SIG$signal leaves no half line" "$(tail -c 1 "$dir/cells.jsonl" | od -An -c | tr -d ' ')" = '\n'
   finish "after SIG$signal --resume does the rest" "$dir"
 done
@@ -222,10 +222,10 @@ dir=$work/killed
 pid=$!
 wait_lines "$dir/cells.jsonl" 3
 refuses 'two runs into one folder are refused' 64 'another run' run "${slow[@]}" --out "$dir" -q --resume
-before=$(lines "$dir/cells.jsonl")
+before=$(told "$dir/cells.jsonl")
 children=$(pgrep -P $pid)
 { kill -KILL $pid; wait $pid; } 2>/dev/null
-is 'kill -9 loses no finished repetition' "$(lines "$dir/cells.jsonl")" -ge "$before"
+is 'kill -9 loses no finished repetition' "$(told "$dir/cells.jsonl")" -ge "$before"
 sleep 0.3
 alive=0
 for child in $children; do grep -qs '^State:[[:space:]]*[RSDTt]' "/proc/$child/status" && alive=1; done

@@ -41,3 +41,5 @@ prints() {
   fi
 }
 lines() { wc -l <"$1"; }
+# told FILE: lines of a run that are not on its references
+told() { grep -vc '"kind":"treeline-reference"' "$1"; }

@@ -215,6 +215,27 @@ static void test_limit__is_told_by_a_calibration_of_the_same_kind(void **state)
     assert_null(limit_calibration(&run, &result));
 }
 
+static void test_limit__a_reference_is_held_against_the_rates_of_rays(void **state)
+{
+    (void)state;
+    struct calibration machine = round_machine();
+    struct run run = {.calibrations = &machine, .calibrations_count = 1};
+    machine.measures[CALIBRATION_rays_ambient].rate = (struct interval){2e6, 1e6, 4e6};
+    /* 20, 10 and 8 million at 10, 5 and 4 M/s: 2 s each; half of that at the median rates. */
+    struct tracing tracing = {.threads = 2,
+                              .trace_seconds = 8,
+                              .primary_rays = 20e6,
+                              .shadow_rays = 10e6,
+                              .occlusion_rays = 8e6};
+    struct limit limit = limit_of_tracing(&run, &tracing);
+    assert_int_equal(limit.resource, LIMIT_RAYS);
+    check_near(limit.seconds.value, 6, 1e-9);
+    check_near(limit.fraction.value, 0.75, 1e-9);
+    check_near(limit.fraction.high, 1.5, 1e-9);
+    tracing.threads = 3;
+    assert_true(isnan(limit_of_tracing(&run, &tracing).fraction.value));
+}
+
 /* Rates of the machine at so many times its best; and one repetition of 20,000 calls in a frame. */
 struct round {
     int number;
@@ -459,6 +480,18 @@ static void test_report__tables_and_roofline_tell_what_bounds_a_cell(void **stat
     assert_int_equal(run_open(folder, &provenance, false, &error), STATUS_OK);
     assert_int_equal(run_append_calibration(folder, &machine, &error), STATUS_OK);
     assert_int_equal(run_append(folder, &result, &error), STATUS_OK);
+    /* 20 million rays at 10 M/s: 2 of 8 s; one of them cached. */
+    for (int i = 0; i < 2; i++) {
+        const struct tracing tracing = {.scene = "tiny",
+                                        .trees = 7,
+                                        .width_px = 800,
+                                        .height_px = 600,
+                                        .threads = 2,
+                                        .trace_seconds = 8,
+                                        .primary_rays = 20e6,
+                                        .from_cache = i == 1};
+        assert_int_equal(run_append_tracing(folder, &tracing, &error), STATUS_OK);
+    }
     if (run_read(arena, folder, &run, &error) ||
         report_write_run(arena, run, arena_printf(arena, "%s/out", folder), &error))
         fail_msg("%s", error.text);
@@ -486,6 +519,11 @@ static void test_report__tables_and_roofline_tell_what_bounds_a_cell(void **stat
         "below = max(y for x, y in roof if x >= 16)\n"
         "assert below <= 4 <= above < 1.1 * below, (below, above)\n"
         "page = open('index.html').read()\n"
+        "import re\n"
+        "row = page.split('ray-traced references cost')[1].split('<tbody>')[1].split('</tr>')[0]\n"
+        "row = [re.sub('<[^>]*>', '', c) for c in row.split('</td>')][:-1]\n"
+        "assert row[4:6] == ['2', '1'] and row[7] == '8 s', row\n"
+        "assert float(row[9]) == 2.5 and float(row[10]) == 25, row\n"
         "assert 'id=\"limit\"' in page and 'aria-label=\"tiny, 7 trees\"' in page\n";
     assert_int_equal(
         file_write(arena_printf(arena, "%s/out/check.py", folder), check, strlen(check), &error),
@@ -528,6 +566,7 @@ int main(void)
         cmocka_unit_test(test_limit__a_cell_without_opengl_is_bound_by_what_it_counted),
         cmocka_unit_test(test_limit__a_frame_faster_than_its_bytes_found_them_in_caches),
         cmocka_unit_test(test_limit__is_told_by_a_calibration_of_the_same_kind),
+        cmocka_unit_test(test_limit__a_reference_is_held_against_the_rates_of_rays),
         cmocka_unit_test(test_limit__a_machine_that_drifts_leaves_the_fraction_alone),
         cmocka_unit_test(test_limit__a_round_without_calibration_takes_the_last_one_before_it),
         cmocka_unit_test(test_calibration__rounds_merge_into_medians_of_each_kind),

@@ -467,6 +467,53 @@ static void test_provenance__names_this_machine_and_build(void **state)
     arena_destroy(arena);
 }
 
+static void test_tracing__a_line_reads_back_among_the_results(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    const char *folder = arena_printf(arena, "/tmp/treeline-tracing-%d", (int)getpid());
+    struct provenance provenance = somewhere();
+    struct run *run;
+    assert_int_equal(run_open(folder, &provenance, false, &error), STATUS_OK);
+    for (size_t i = 0; i < 5; i++) {
+        const struct tracing tracing = {.scene = "oak \"hills\"",
+                                        .trees = 1000 + i,
+                                        .width_px = 400,
+                                        .height_px = 300,
+                                        .threads = 3,
+                                        .effects = EFFECT_FOG | EFFECT_SUN_SHADOWS,
+                                        .key = UINT64_MAX - i,
+                                        .time = 0.25,
+                                        .build_seconds = 1.0 / 3,
+                                        .trace_seconds = 2.0 / 3,
+                                        .primary_rays = 7e6,
+                                        .shadow_rays = 8e6,
+                                        .occlusion_rays = NAN,
+                                        .standard_error = 0.004,
+                                        .from_cache = i % 2};
+        if (run_append_tracing(folder, &tracing, &error))
+            fail_msg("%s", error.text);
+    }
+    if (run_read(arena, folder, &run, &error))
+        fail_msg("%s", error.text);
+    assert_int_equal(run->results_count, 0);
+    assert_int_equal(run->tracings_count, 5);
+    for (size_t i = 0; i < 5; i++) {
+        const struct tracing *back = &run->tracings[i];
+        assert_string_equal(back->scene, "oak \"hills\"");
+        assert_true(back->trees == 1000 + i && back->key == UINT64_MAX - i);
+        assert_true(back->width_px == 400 && back->height_px == 300 && back->threads == 3);
+        assert_int_equal(back->effects, EFFECT_FOG | EFFECT_SUN_SHADOWS);
+        assert_true(back->time == 0.25 && back->standard_error == 0.004);
+        assert_true(back->build_seconds == 1.0 / 3 && back->trace_seconds == 2.0 / 3);
+        assert_true(back->primary_rays == 7e6 && back->shadow_rays == 8e6);
+        assert_true(isnan(back->occlusion_rays) && back->from_cache == (i % 2 == 1));
+    }
+    folder_remove(arena, folder);
+    arena_destroy(arena);
+}
+
 static void test_results__the_readme_documents_every_column(void **state)
 {
     (void)state;
@@ -513,8 +560,10 @@ static void test_results__the_readme_names_every_key_that_is_written(void **stat
     while (!result.has_flicker || !result.views_count || !result.views[0].compared);
     const char *path = arena_printf(arena, "%s/results/README.md", data_folder());
     assert_int_equal(file_read(arena, path, 0, &text, &size, &error), STATUS_OK);
-    const char *lines[] = {provenance_to_json(arena, &provenance), result_to_json(arena, &result)};
-    for (int l = 0; l < 2; l++)
+    const struct tracing tracing = {.scene = "tiny"};
+    const char *lines[] = {provenance_to_json(arena, &provenance), result_to_json(arena, &result),
+                           tracing_to_json(arena, &tracing)};
+    for (int l = 0; l < 3; l++)
         for (const char *c = lines[l]; (c = strstr(c, "\":"));) {
             const char *start = c;
             while (start[-1] != '"')
@@ -539,6 +588,7 @@ int main(void)
         cmocka_unit_test(test_run__the_lock_admits_one_process_and_ends_with_it),
         cmocka_unit_test(test_run__a_place_that_cannot_be_written_is_an_io_error),
         cmocka_unit_test(test_provenance__names_this_machine_and_build),
+        cmocka_unit_test(test_tracing__a_line_reads_back_among_the_results),
         cmocka_unit_test(test_results__the_readme_documents_every_column),
         cmocka_unit_test(test_results__the_readme_names_every_key_that_is_written),
     };

@@ -2,6 +2,7 @@
  * own. */
 #include "cell/cell.h"
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/plural.h"
@@ -74,25 +75,55 @@ static enum status shoots_list(struct arena *arena, const struct plan *plan, con
     return STATUS_OK;
 }
 
+/* A line for the parent, which keeps it. */
+static void tracing_tell(struct arena *arena, const struct shoot *shoot, const struct scene *scene,
+                         double time, const struct reference_options *options, uint64_t key,
+                         const struct reference_stats *stats, int out)
+{
+    const struct tracing tracing = {.scene = shoot->cell->scene,
+                                    .trees = scene->instances_count,
+                                    .width_px = shoot->cell->width_px,
+                                    .height_px = shoot->cell->height_px,
+                                    .threads =
+                                        options->threads ? options->threads : clock_cpu_count(),
+                                    .effects = options->effects,
+                                    .key = key,
+                                    .time = time,
+                                    .build_seconds = stats->build_seconds,
+                                    .trace_seconds = stats->trace_seconds,
+                                    .primary_rays = stats->primary_rays,
+                                    .shadow_rays = stats->shadow_rays,
+                                    .occlusion_rays = stats->occlusion_rays,
+                                    .standard_error = (double)stats->standard_error,
+                                    .from_cache = stats->from_cache};
+    dprintf(out, "%s\n", tracing_to_json(arena, &tracing));
+}
+
 static enum status reference_make(struct arena *arena, const struct shoot *shoot,
                                   const struct scene *scene, double time, unsigned effects,
-                                  bool neighbour, struct error *error)
+                                  bool neighbour, int out, struct error *error)
 {
     struct view along, *view = &along;
-    view_at(scene, neighbour ? stage_neighbour_time(scene, time) : time, view);
+    time = neighbour ? stage_neighbour_time(scene, time) : time;
+    view_at(scene, time, view);
     struct reference_options options =
         stage_reference_options(shoot->plan, shoot->cell, effects, neighbour);
-    const char *path =
-        stage_reference_path(arena, shoot->folder, reference_key(scene, view, &options));
+    uint64_t key = reference_key(scene, view, &options);
+    const char *path = stage_reference_path(arena, shoot->folder, key);
     if (file_exists(path))
         return STATUS_OK;
     struct frame *frame;
     struct reference_stats stats;
     enum status status = reference_cached(arena, scene, view, &options, &frame, &stats, error);
-    return status ? status : frame_save(frame, path, error);
+    if (!status)
+        status = frame_save(frame, path, error);
+    if (!status)
+        tracing_tell(arena, shoot, scene, time, &options, key, &stats, out);
+    return status;
 }
 
-/* In the child: every view and set of effects; a line after each, "SHARE" done. */
+/* In the child: every view and set of effects; a line for each picture that it made, and "SHARE"
+ * done. */
 static enum status shoot_work(void *context, int out)
 {
     const struct shoot *shoot = context;
@@ -113,9 +144,9 @@ static enum status shoot_work(void *context, int out)
         double time = path_time(scene, i % views, views);
         size_t set = i / views;
         unsigned effects = shoot->effects[set];
-        status = reference_make(scratch, shoot, scene, time, effects, false, &error);
+        status = reference_make(scratch, shoot, scene, time, effects, false, out, &error);
         if (!status && moves && shoot->drawn[set])
-            status = reference_make(scratch, shoot, scene, time, effects, true, &error);
+            status = reference_make(scratch, shoot, scene, time, effects, true, out, &error);
         arena_destroy(scratch);
         dprintf(out, "%.6f\n", (double)(i + 1) / (double)total);
     }
@@ -127,12 +158,25 @@ static enum status shoot_work(void *context, int out)
 struct listener {
     struct progress *progress;
     size_t before; /* shoots done */
-    const char *label;
+    const char *label, *folder;
+    enum status status; /* of keeping what was heard */
+    struct error *error;
 };
 
 static void shoot_heard(void *context, const char *line)
 {
-    const struct listener *listener = context;
+    struct listener *listener = context;
+    if (*line == '{') {
+        struct arena *arena = arena_create(0);
+        struct tracing tracing;
+        if (!listener->status)
+            listener->status =
+                tracing_from_json(arena, line, "the tracer's process", &tracing, listener->error);
+        if (!listener->status)
+            listener->status = run_append_tracing(listener->folder, &tracing, listener->error);
+        arena_destroy(arena);
+        return;
+    }
     progress_update(listener->progress, (double)listener->before + strtod(line, NULL),
                     listener->label);
 }
@@ -146,6 +190,8 @@ static enum status shoot_run(struct arena *arena, struct shoot *shoot, struct li
     enum status status = process_run(arena, &request, &outcome, &error);
     if (!status && outcome.interrupted)
         return STATUS_INTERRUPTED;
+    if (listener->status)
+        return listener->status;
     if (!status && !outcome.signal && !outcome.exit_code)
         return STATUS_OK;
     const char *why = status ? error.text : outcome.errors;
@@ -166,7 +212,9 @@ enum status cell_references(struct arena *arena, const struct plan *plan, const 
         status = file_make_folder(arena_printf(arena, "%s/references", folder), error);
     if (status)
         return status;
-    struct listener listener = {.progress = progress_start("references", (double)count, quiet)};
+    struct listener listener = {.progress = progress_start("references", (double)count, quiet),
+                                .folder = folder,
+                                .error = error};
     for (size_t i = 0; i < count && !status; i++) {
         listener.before = i;
         listener.label = arena_printf(arena, "%s, %zu tree%s", shoots[i].cell->scene,

@@ -30,6 +30,7 @@ void page_laws(const struct page *page);
 size_t page_figures(const struct page *page, enum figure_kind first, enum figure_kind last);
 /* What the machine can do, and how near the cells come; nothing where it was not calibrated. */
 void page_limit(const struct page *page);
+void page_tracings(const struct page *page); /* the references' share of it; a part of it */
 /* Papers' printed tables beside ours, and what the run says to their claims; nothing where no
  * table has a cell of the run. */
 void page_papers(const struct page *page);

@@ -56,4 +56,5 @@ void page_limit(const struct page *page)
     page_figures(page, FIGURE_ROOFLINE, FIGURE_ROOFLINE);
     for (size_t i = 0; i < run->calibrations_count; i++)
         put_calibration(page, &run->calibrations[i]);
+    page_tracings(page);
 }

@@ -1,12 +1,8 @@
 /* A calibration as one line of JSON and back; results/README.md documents the keys. */
 #include "results/calibration.h"
 
+#include "results/fields.h"
 #include "results/result.h"
-#include "wall/json.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
 
 char *calibration_to_json(struct arena *arena, const struct calibration *calibration)
 {
@@ -38,12 +34,6 @@ char *calibration_to_json(struct arena *arena, const struct calibration *calibra
     return json_out_text(out);
 }
 
-/* A number of at least 0 that may be null: NaN. */
-static double positive_or_nan(struct json *object, const char *key)
-{
-    return json_has(object, key) ? json_number(object, key, NAN, 0, DBL_MAX) : NAN;
-}
-
 enum status calibration_from_json(struct arena *arena, const char *text, const char *where,
                                   struct calibration *calibration, struct error *error)
 {
@@ -52,30 +42,24 @@ enum status calibration_from_json(struct arena *arena, const char *text, const c
     if (!doc)
         return STATUS_INVALID;
     struct json *root = json_root(doc);
-    if (result_version_check(root))
+    if (kind_check(root, CALIBRATION_KIND))
         return json_end(doc);
-    const char *kind = json_text(root, "kind", "");
-    if (strcmp(kind, CALIBRATION_KIND) != 0)
-        json_fail(root, "kind", "value is '%s'; allowed: " CALIBRATION_KIND, kind);
     calibration->round = (int)json_integer(root, "round", 0, 0, INT32_MAX);
-    calibration->width_px = (int)json_integer(root, "width_px", 0, 1, 1 << 20);
-    calibration->height_px = (int)json_integer(root, "height_px", 0, 1, 1 << 20);
-    const char *target = json_text(root, "target", "");
-    if (!target_format_from_word(target, &calibration->format))
-        json_fail(root, "target", "value is '%s'; allowed: rgba8|rgba16f|rgba32f", target);
+    size_get(root, &calibration->width_px, &calibration->height_px);
+    calibration->format = target_get(root);
     calibration->threads = (int)json_integer(root, "threads", 0, 1, 65536);
-    calibration->core_ghz = positive_or_nan(root, "core_ghz");
-    calibration->seconds = positive_or_nan(root, "seconds");
+    calibration->core_ghz = number_or_nan(root, "core_ghz", 0);
+    calibration->seconds = number_or_nan(root, "seconds", 0);
     calibration->backend = json_text(root, "backend", "none");
     calibration->renderer = json_text(root, "renderer", "none");
     struct json *measures = json_object(root, "measures");
     for (size_t i = 0; i < CALIBRATION_COUNT; i++) {
         struct calibration_measure *measure = &calibration->measures[i];
         struct json *object = json_object(measures, calibration_table[i].field);
-        measure->rate.value = positive_or_nan(object, "rate");
-        measure->rate.low = positive_or_nan(object, "low");
-        measure->rate.high = positive_or_nan(object, "high");
-        measure->fragments_per_triangle = positive_or_nan(object, "fragments_per_triangle");
+        measure->rate.value = number_or_nan(object, "rate", 0);
+        measure->rate.low = number_or_nan(object, "low", 0);
+        measure->rate.high = number_or_nan(object, "high", 0);
+        measure->fragments_per_triangle = number_or_nan(object, "fragments_per_triangle", 0);
     }
     return json_end(doc);
 }

@@ -135,6 +135,26 @@ static struct interval fastest_memory(const struct calibration *calibration)
     return best;
 }
 
+static struct limit limit_nothing(void)
+{
+    struct limit limit = {.resource = LIMIT_UNKNOWN,
+                          .seconds = nothing,
+                          .fraction = nothing,
+                          .fragments_per_triangle = NAN};
+    for (size_t i = 0; i < LIMIT_COUNT; i++)
+        limit.bounds[i] = NAN;
+    return limit;
+}
+
+/* The fraction of the limit, by what was measured. */
+static void limit_reach(struct limit *limit, struct interval seconds)
+{
+    if (seconds.value > 0)
+        limit->fraction =
+            (struct interval){limit->seconds.value / seconds.value,
+                              limit->seconds.low / seconds.high, limit->seconds.high / seconds.low};
+}
+
 static void bind(struct limit *limit, enum limit_resource resource, struct interval seconds)
 {
     limit->bounds[resource] = seconds.value;
@@ -164,10 +184,7 @@ static void bind_cpu(struct limit *limit, const struct calibration *calibration,
 struct limit limit_of(const struct calibration *calibration, const struct result *result,
                       struct interval frame_seconds)
 {
-    struct limit limit = {.resource = LIMIT_UNKNOWN, .seconds = nothing, .fraction = nothing};
-    for (size_t i = 0; i < LIMIT_COUNT; i++)
-        limit.bounds[i] = NAN;
-    limit.fragments_per_triangle = NAN;
+    struct limit limit = limit_nothing();
     if (!calibration)
         return limit;
     const struct calibration_measure *measures = calibration->measures;
@@ -187,10 +204,7 @@ struct limit limit_of(const struct calibration *calibration, const struct result
     bind(&limit, LIMIT_FILL,
          least_seconds(result->fragments, measures[CALIBRATION_fill_opaque].rate));
     bind_cpu(&limit, calibration, result, frame_seconds.value);
-    if (frame_seconds.value > 0)
-        limit.fraction = (struct interval){limit.seconds.value / frame_seconds.value,
-                                           limit.seconds.low / frame_seconds.high,
-                                           limit.seconds.high / frame_seconds.low};
+    limit_reach(&limit, frame_seconds);
     return limit;
 }
 
@@ -231,5 +245,27 @@ struct limit limit_of_cell(const struct run *run, const struct result *const *re
     struct calibration paired = kept ? calibration_merge(arena, parts, kept) : *kind;
     struct limit limit = limit_of(&paired, counted, frame_seconds);
     arena_destroy(arena);
+    return limit;
+}
+
+struct limit limit_of_tracing(const struct run *run, const struct tracing *tracing)
+{
+    struct limit limit = limit_nothing();
+    const struct calibration *calibration = NULL;
+    for (size_t i = 0; i < run->calibrations_count && !calibration; i++)
+        if (run->calibrations[i].threads == tracing->threads)
+            calibration = &run->calibrations[i];
+    if (!calibration)
+        return limit;
+    const struct calibration_measure *measures = calibration->measures;
+    struct interval primary =
+        least_seconds(tracing->primary_rays, measures[CALIBRATION_rays_primary].rate);
+    struct interval shadow =
+        least_seconds(tracing->shadow_rays, measures[CALIBRATION_rays_shadow].rate);
+    struct interval ambient =
+        least_seconds(tracing->occlusion_rays, measures[CALIBRATION_rays_ambient].rate);
+    bind(&limit, LIMIT_RAYS, seconds_add(primary, seconds_add(shadow, ambient)));
+    double seconds = tracing->trace_seconds;
+    limit_reach(&limit, (struct interval){seconds, seconds, seconds});
     return limit;
 }

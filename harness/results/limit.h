@@ -58,6 +58,11 @@ struct limit limit_of_cell(const struct run *run, const struct result *const *re
                            size_t count, const struct result *counted,
                            struct interval frame_seconds);
 
+/* Least time that a reference's rays take at the calibrated rates (to the sun: shadow, into the
+ * sky: ambient), of a calibration with as many threads, and its share of the time that it took;
+ * unknown where there is none. */
+struct limit limit_of_tracing(const struct run *run, const struct tracing *tracing);
+
 /* Rate of triangles that shade so many fragments each, in 1/s, from the calibrated sizes:
  * interpolated in the logarithms of size and rate; below the smallest size in the time between it
  * and a culled one, above the largest by fill. */

@@ -6,10 +6,11 @@
 #include "base/error.h"
 #include "calibrate/calibrate.h"
 #include "plan/plan.h"
+#include "results/tracing.h"
 #include "truth/metrics.h"
 
 /* Version 2 added the calibration; a run of version 1 is read as one that has none. Version 3 added
- * the method's own counts and calibrations of several rounds. */
+ * the method's own counts, calibrations of several rounds, and the references' cost. */
 #define RESULT_VERSION 3
 #define RESULT_VERSION_OLDEST 1
 
@@ -101,7 +102,9 @@ struct run {
     struct calibration *measured; /* calibrations as they were made, in file order */
     size_t calibrations_count;
     struct calibration *calibrations; /* the same over all rounds: one a kind */
-    size_t torn_lines;                /* a last line cut by a kill is dropped and counted */
+    size_t tracings_count;
+    struct tracing *tracings; /* of references, in file order */
+    size_t torn_lines;        /* a last line cut by a kill is dropped and counted */
 };
 
 struct json;
@@ -120,6 +123,8 @@ enum status run_open(const char *folder, const struct provenance *provenance, bo
 enum status run_append(const char *folder, const struct result *result, struct error *error);
 enum status run_append_calibration(const char *folder, const struct calibration *calibration,
                                    struct error *error);
+enum status run_append_tracing(const char *folder, const struct tracing *tracing,
+                               struct error *error);
 /* Reads a run; accepts the folder or the file. A malformed line in the middle is STATUS_INVALID
  * with its number. */
 enum status run_read(struct arena *arena, const char *path, struct run **run, struct error *error);

@@ -1,7 +1,7 @@
 /* A result as one line of JSON and back; results/README.md documents the keys. */
 #include "results/result.h"
 
-#include "wall/json.h"
+#include "results/fields.h"
 
 #include <float.h>
 #include <math.h>
@@ -14,17 +14,6 @@ void result_init(struct result *result, const struct cell *cell, int repetition)
 #define COLUMN_INIT(field, unit, better, doc) result->field = NAN;
     RESULT_COLUMNS(COLUMN_INIT)
 #undef COLUMN_INIT
-}
-
-static void effects_put(struct json_out *out, const char *key, unsigned effects)
-{
-    json_open(out, key, '[');
-#define EFFECT_PUT(name, bit, word, meaning)                                                       \
-    if (effects & (name))                                                                          \
-        json_put_text(out, NULL, word);
-    EFFECT_LIST(EFFECT_PUT)
-#undef EFFECT_PUT
-    json_close(out);
 }
 
 static void metrics_put(struct json_out *out, const char *key, const struct metrics *metrics)
@@ -122,33 +111,11 @@ char *result_to_json(struct arena *arena, const struct result *result)
     return json_out_text(out);
 }
 
-/* A number that may be null: NaN, "not measured". */
-static double number_or_nan(struct json *object, const char *key)
-{
-    double value = json_number(object, key, INFINITY, -DBL_MAX, DBL_MAX);
-    return isinf(value) ? NAN : value;
-}
-
-static unsigned effects_get(struct json *object, const char *key)
-{
-    unsigned effects = 0;
-    for (size_t i = 0; i < json_array(object, key); i++) {
-        const char *text = json_element_text(object, key, i);
-        unsigned found = 0;
-#define EFFECT_GET(name, bit, word, meaning) found |= !strcmp(text, word) ? (unsigned)(name) : 0u;
-        EFFECT_LIST(EFFECT_GET)
-#undef EFFECT_GET
-        if (!found && *text)
-            json_fail(object, key, "'%s' is no effect", text);
-        effects |= found;
-    }
-    return effects;
-}
-
 static void metrics_get(struct json *object, const char *key, struct metrics *metrics)
 {
     struct json *values = json_object(object, key);
-#define METRIC_GET(field, word, better, domain, doc) metrics->field = number_or_nan(values, #field);
+#define METRIC_GET(field, word, better, domain, doc)                                               \
+    metrics->field = number_or_nan(values, #field, -DBL_MAX);
     METRIC_LIST(METRIC_GET)
 #undef METRIC_GET
 }
@@ -183,18 +150,15 @@ static void cell_get(struct json *root, struct cell *cell)
     const char *lod = json_text(root, "lod", "");
     if (!lod_from_word(lod, &cell->lod))
         json_fail(root, "lod", "value is '%s'; allowed: low|intermediate|high|auto", lod);
-    cell->width_px = (int)json_integer(root, "width_px", 0, 1, 1 << 20);
-    cell->height_px = (int)json_integer(root, "height_px", 0, 1, 1 << 20);
-    const char *target = json_text(root, "target", "");
-    if (!target_format_from_word(target, &cell->format))
-        json_fail(root, "target", "value is '%s'; allowed: rgba8|rgba16f|rgba32f", target);
+    size_get(root, &cell->width_px, &cell->height_px);
+    cell->format = target_get(root);
     cell->seed = json_u64(root, "seed");
 }
 
 static void view_get(struct json *object, struct result_view *view)
 {
-    view->time = number_or_nan(object, "time");
-    view->distance_m = number_or_nan(object, "distance_m");
+    view->time = number_or_nan(object, "time", -DBL_MAX);
+    view->distance_m = number_or_nan(object, "distance_m", -DBL_MAX);
     view->picture_hash = json_u64(object, "picture_hash");
     view->picture = json_text(object, "picture", NULL);
     view->same_key = json_u64(object, "same_key");
@@ -204,8 +168,8 @@ static void view_get(struct json *object, struct result_view *view)
         return;
     comparison_get(object, "same", &view->same);
     comparison_get(object, "full", &view->full);
-    view->same_standard_error = (float)number_or_nan(object, "same_standard_error");
-    view->full_standard_error = (float)number_or_nan(object, "full_standard_error");
+    view->same_standard_error = (float)number_or_nan(object, "same_standard_error", -DBL_MAX);
+    view->full_standard_error = (float)number_or_nan(object, "full_standard_error", -DBL_MAX);
 }
 
 static void lists_get(struct arena *arena, struct json *root, struct result *result)
@@ -222,9 +186,9 @@ static void lists_get(struct arena *arena, struct json *root, struct result *res
     result->has_flicker = flicker != NULL;
     if (!flicker)
         return;
-    result->flicker.mean = number_or_nan(flicker, "mean");
-    result->flicker.peak = number_or_nan(flicker, "peak");
-    result->flicker.floor = number_or_nan(flicker, "floor");
+    result->flicker.mean = number_or_nan(flicker, "mean", -DBL_MAX);
+    result->flicker.peak = number_or_nan(flicker, "peak", -DBL_MAX);
+    result->flicker.floor = number_or_nan(flicker, "floor", -DBL_MAX);
     result->flicker.peak_frame = (size_t)json_integer(flicker, "peak_frame", 0, 0, INT32_MAX);
 }
 
@@ -255,7 +219,7 @@ enum status result_from_json(struct arena *arena, const char *text, const char *
     result->message = json_text(root, "message", "");
     result->signal = (int)json_integer(root, "signal", 0, 0, 256);
     result->started = json_text(root, "started", "");
-    result->seconds = number_or_nan(root, "seconds");
+    result->seconds = number_or_nan(root, "seconds", -DBL_MAX);
     result->effects = effects_get(root, "effects");
     result->scene_effects = effects_get(root, "scene_effects");
     result->instances = (size_t)json_integer(root, "instances", 0, 0, INT64_C(1) << 53);
@@ -264,7 +228,7 @@ enum status result_from_json(struct arena *arena, const char *text, const char *
     result->renderer = json_text(root, "renderer", NULL);
     result->gl_version = json_text(root, "gl_version", NULL);
     result->threads = (int)json_integer(root, "threads", 0, 0, 65536);
-#define COLUMN_GET(field, unit, better, doc) result->field = number_or_nan(root, #field);
+#define COLUMN_GET(field, unit, better, doc) result->field = number_or_nan(root, #field, -DBL_MAX);
     RESULT_COLUMNS(COLUMN_GET)
 #undef COLUMN_GET
     lists_get(arena, root, result);

@@ -79,25 +79,34 @@ static const char *folder_of(struct arena *arena, const char *file)
     return slash ? arena_printf(arena, "%.*s", (int)(slash - file), file) : ".";
 }
 
-/* Place for one more; twice as many each time. */
-static struct calibration *calibration_add(struct arena *arena, struct run *run)
+/* One more behind count elements; place for twice as many each time. */
+static void *list_add(struct arena *arena, void *list, size_t *count, size_t size)
 {
-    size_t count = run->measured_count;
-    if (!(count & (count - 1))) {
-        struct calibration *more = ARENA_ARRAY(arena, struct calibration, count ? 2 * count : 1);
-        if (count)
-            memcpy(more, run->measured, count * sizeof *more);
-        run->measured = more;
+    size_t before = *count;
+    if (!(before & (before - 1))) {
+        void *more = arena_alloc(arena, before ? 2 * before : 1, size);
+        if (before)
+            memcpy(more, list, before * size);
+        list = more;
     }
-    return &run->measured[run->measured_count++];
+    ++*count;
+    return list;
 }
 
-/* One line behind the first: a result, or a calibration, which alone says its kind. */
+/* One line behind the first: a result, or one that says its kind. */
 static enum status line_read(struct arena *arena, const char *line, const char *where,
                              struct run *run, struct error *error)
 {
-    if (strstr(line, "\"kind\":\"" CALIBRATION_KIND "\""))
-        return calibration_from_json(arena, line, where, calibration_add(arena, run), error);
+    if (strstr(line, "\"kind\":\"" CALIBRATION_KIND "\"")) {
+        run->measured = list_add(arena, run->measured, &run->measured_count, sizeof *run->measured);
+        return calibration_from_json(arena, line, where, &run->measured[run->measured_count - 1],
+                                     error);
+    }
+    if (strstr(line, "\"kind\":\"" TRACING_KIND "\"")) {
+        run->tracings = list_add(arena, run->tracings, &run->tracings_count, sizeof *run->tracings);
+        return tracing_from_json(arena, line, where, &run->tracings[run->tracings_count - 1],
+                                 error);
+    }
     return result_from_json(arena, line, where, &run->results[run->results_count++], error);
 }
 
@@ -247,29 +256,35 @@ enum status run_open(const char *folder, const struct provenance *provenance, bo
     return status;
 }
 
+/* The line's arena ends with it. */
 static enum status line_append(struct arena *arena, const char *folder, const char *text,
                                struct error *error)
 {
     const char *file = arena_printf(arena, "%s/cells.jsonl", folder);
     const char *line = arena_printf(arena, "%s\n", text);
-    return file_append(file, line, strlen(line), error);
+    enum status status = file_append(file, line, strlen(line), error);
+    arena_destroy(arena);
+    return status;
 }
 
 enum status run_append(const char *folder, const struct result *result, struct error *error)
 {
     struct arena *arena = arena_create(0);
-    enum status status = line_append(arena, folder, result_to_json(arena, result), error);
-    arena_destroy(arena);
-    return status;
+    return line_append(arena, folder, result_to_json(arena, result), error);
 }
 
 enum status run_append_calibration(const char *folder, const struct calibration *calibration,
                                    struct error *error)
 {
     struct arena *arena = arena_create(0);
-    enum status status = line_append(arena, folder, calibration_to_json(arena, calibration), error);
-    arena_destroy(arena);
-    return status;
+    return line_append(arena, folder, calibration_to_json(arena, calibration), error);
+}
+
+enum status run_append_tracing(const char *folder, const struct tracing *tracing,
+                               struct error *error)
+{
+    struct arena *arena = arena_create(0);
+    return line_append(arena, folder, tracing_to_json(arena, tracing), error);
 }
 
 enum status run_lock(const char *folder, int *lock, struct error *error)
