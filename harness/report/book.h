@@ -189,7 +189,9 @@ enum figure_kind {
     FIGURE_GROWTH,
     FIGURE_DISTANCE,
     FIGURE_ROOFLINE,
-    FIGURE_PAPER
+    FIGURE_PAPER,
+    FIGURE_SWEEP,
+    FIGURE_MEMORY
 };
 struct figure {
     enum figure_kind kind;

@@ -88,6 +88,14 @@ static void put_head(const struct page *page)
     page_text(page, "</p>\n");
 }
 
+static bool page_has(const struct page *page, enum figure_kind kind)
+{
+    for (size_t i = 0; i < page->figures->count; i++)
+        if (page->figures->list[i].svg && page->figures->list[i].kind == kind)
+            return true;
+    return false;
+}
+
 static void put_facts(const struct page *page)
 {
     const struct book *book = page->book;
@@ -109,8 +117,9 @@ static void put_facts(const struct page *page)
     put_fact(page, "on", from->cpu);
     put_fact(page, "started", plain_date(page->arena, from->started));
     page_text(page, "</dl>\n<nav aria-label=\"sections\"><a href=\"#trade\">error and time</a>"
-                    "<a href=\"#growth\">more trees</a><a href=\"#distance\">distance</a>"
-                    "<a href=\"#cost\">memory and build</a>");
+                    "<a href=\"#growth\">more trees</a><a href=\"#distance\">distance</a>");
+    page_text(page, page_has(page, FIGURE_SWEEP) ? "<a href=\"#options\">options</a>" : "");
+    page_text(page, "<a href=\"#cost\">memory and build</a>");
     page_text(page, book->run->calibrations_count ? "<a href=\"#limit\">limits</a>" : "");
     page_text(page, book->besides_count ? "<a href=\"#papers\">beside the paper</a>" : "");
     page_text(page, "<a href=\"#pictures\">pictures</a>"
@@ -154,7 +163,9 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
         [FIGURE_DISTANCE] = "One point a view; error of the representation.",
         [FIGURE_ROOFLINE] = ("The nearer the line, the nearer the limit. Bars: 95 % intervals. A "
                              "point above it mixes large and small triangles."),
-        [FIGURE_PAPER] = ("On the line: the same ratio as printed. Bars: 95 % intervals."),
+        [FIGURE_PAPER] = "On the line: the same ratio as printed. Bars: 95 % intervals.",
+        [FIGURE_SWEEP] = "Along a line nothing else changes. Bars: 95 % intervals.",
+        [FIGURE_MEMORY] = "What a method keeps, against its error: to the left is less.",
     };
     size_t shown = 0;
     for (size_t i = 0; i < page->figures->count; i++) {
@@ -162,8 +173,9 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
         if (!figure->svg || figure->kind < first || figure->kind > last)
             continue;
         if (!shown++)
-            fprintf(page->out, "<div%s><div class=\"figures\">\n",
-                    figure->kind >= FIGURE_ROOFLINE ? "" : " class=\"still\"");
+            fprintf(page->out, "<div%s><div class=\"figures%s\">\n",
+                    figure->kind >= FIGURE_ROOFLINE ? "" : " class=\"still\"",
+                    figure->kind == FIGURE_SWEEP ? " three" : "");
         put_figure(page, figure, captions[figure->kind]);
     }
     page_text(page, shown ? "</div></div>\n" : "");
@@ -207,6 +219,16 @@ static void put_growth_and_distance(const struct page *page)
             "<p class=\"soft still\">No plot: in every scene of this run the camera keeps its "
             "distance to the trees; a scene that walks or flies in shows how errors grow "
             "near by.</p>\n");
+}
+
+static void put_options(const struct page *page)
+{
+    if (!page_has(page, FIGURE_SWEEP))
+        return;
+    page_text(page, "<h2 id=\"options\">Error, time and memory against an option</h2>\n<p>The "
+                    "options that this run gave three values or more, all else being equal; of "
+                    "each scene the most trees.</p>\n");
+    page_figures(page, FIGURE_SWEEP, FIGURE_SWEEP);
 }
 
 static void put_pictures(const struct page *page)
@@ -266,6 +288,7 @@ static void put_page(const struct page *page)
     page_live(page, "live-controls");
     put_trade(page);
     put_growth_and_distance(page);
+    put_options(page);
     page_cost(page);
     page_limit(page);
     page_papers(page);

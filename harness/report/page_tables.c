@@ -135,6 +135,7 @@ void page_cost(const struct page *page)
     page_text(page, "<h2 id=\"cost\">Memory and build time</h2>\n<p>What a method needs before its "
                     "first picture, measured once and cold, and what it keeps.</p>\n");
     page_live(page, "live-cost");
+    page_figures(page, FIGURE_MEMORY, FIGURE_MEMORY);
     page_text(page, "<div class=\"still\"><p>Bars are shares of the largest value of the "
                     "column.</p><div class=\"scroll\"><table class=\"cost\"><thead><tr>"
                     "<th scope=\"col\">scene</th><th scope=\"col\" class=\"n\">trees</th>"

@@ -63,6 +63,14 @@ enum status plot_roofline(const struct book *book, const struct group *group, co
 struct paper_beside;
 enum status plot_paper(const struct book *book, const struct paper_beside *beside,
                        const char *folder, struct figure *figure, struct error *error);
+/* Error, frame time or memory against a swept option. */
+struct sweep;
+enum sweep_axis { SWEEP_ERROR, SWEEP_TIME, SWEEP_MEMORY };
+enum status plot_sweep(const struct book *book, const struct sweep *sweep, enum sweep_axis axis,
+                       const char *folder, struct figure *figure, struct error *error);
+/* Error against memory, of a group. */
+enum status plot_memory(const struct book *book, const struct group *group, const char *folder,
+                        struct figure *figure, struct error *error);
 
 /* Runs gnuplot once over all figures and fills in their SVGs. */
 enum status plot_draw(const struct book *book, const char *folder, const struct figures *figures,

@@ -3,8 +3,9 @@
 
 #include "base/file.h"
 #include "report/paper.h"
+#include "report/sweep.h"
 
-enum { FAMILIES_MAX = 6, KINDS_COUNT = 5 };
+enum { FAMILIES_MAX = 6, KINDS_COUNT = 5, SWEEPS_MAX = 6, SWEEP_AXES = SWEEP_MEMORY + 1 };
 
 /* Keeps the figure if something was drawn. */
 static void keep(struct figures *figures)
@@ -33,16 +34,41 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
     return status;
 }
 
+/* Error, time and memory against the options that are swept; error against memory of the group that
+ * the headline speaks about. */
+static enum status plan_options(const struct book *book, const char *folder,
+                                struct figures *figures, struct error *error)
+{
+    enum status status = STATUS_OK;
+    size_t count, front_count;
+    const struct sweep *sweeps = sweeps_find(book, &count);
+    for (size_t i = 0; i < count && i < SWEEPS_MAX; i++)
+        for (int axis = 0; axis < SWEEP_AXES && status == STATUS_OK; axis++) {
+            status = plot_sweep(book, &sweeps[i], (enum sweep_axis)axis, folder,
+                                &figures->list[figures->count], error);
+            keep(figures);
+        }
+    size_t *front = ARENA_ARRAY(book->arena, size_t, book->rows_count + 1);
+    const struct group *group = answer_group(book, front, &front_count);
+    if (group && status == STATUS_OK)
+        status = plot_memory(book, group, folder, &figures->list[figures->count], error);
+    keep(figures);
+    return status;
+}
+
 enum status plots_draw(const struct book *book, const char *folder, struct figures *figures,
                        struct error *error)
 {
     *figures =
         (struct figures){.list = ARENA_ARRAY(book->arena, struct figure,
-                                             FAMILIES_MAX * KINDS_COUNT + book->besides_count + 1)};
+                                             FAMILIES_MAX * KINDS_COUNT + SWEEPS_MAX * SWEEP_AXES +
+                                                 book->besides_count + 2)};
     enum status status = file_make_folder(folder, error);
     for (size_t g = 0; g < book->groups_count && status == STATUS_OK; g++)
         if (book_is_overview(book, g) && book->groups[g].family < FAMILIES_MAX)
             status = plan_group(book, g, folder, figures, error);
+    if (status == STATUS_OK)
+        status = plan_options(book, folder, figures, error);
     for (size_t i = 0; i < book->besides_count && status == STATUS_OK; i++) {
         status = plot_paper(book, &book->besides[i], folder, &figures->list[figures->count], error);
         keep(figures);
