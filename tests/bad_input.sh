@@ -93,6 +93,33 @@ mesh("long.glb", b"glTF" + struct.pack("<IIII", 2, 2 ** 31, 2 ** 31 - 30, 0x4E4F
 mesh("count.ply", "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n0\n")
 mesh("list.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty list uint float x\nend_header\n\xff\xff\xff\xff1234")
 
+# Folders of pictures.
+def cameras(name, data):
+    put(f"i-{name}/cameras.json", data if isinstance(data, str) else json.dumps(data))
+    s("i-" + name, {**scene, "plants": [{"images": "i-" + name}]})
+view = {"kind": "orthographic", "color": "c.png", "depth": "d.png", "position_m": [0, 0, 5], "direction": [0, 0, -1], "extent_m": [2, 2]}
+box = {"minimum_m": [-1, -1, -1], "maximum_m": [1, 1, 1]}
+cameras("cut", '{"minimum_m": [')
+cameras("none", {**box, "views": []})
+cameras("many", {**box, "views": [view] * 65})
+cameras("flat", {**box, "maximum_m": [1, -1, 1], "views": [view]})
+cameras("key", {**box, "views": [{**view, "roll": 3}]})
+cameras("still", {**box, "views": [{**view, "direction": [0, 0, 0]}]})
+cameras("up", {**box, "views": [{**view, "up": [0, 0, 3]}]})
+cameras("wide", {**box, "views": [{**view, "kind": "pinhole", "fov_y_deg": 180}]})
+cameras("kind", {**box, "views": [{**view, "kind": "fisheye"}]})
+cameras("absent", {**box, "views": [view]})
+cameras("pipe", {**box, "views": [{**view, "color": "../pipe"}]})
+cameras("words", {**box, "views": [view]})
+cameras("sizes", {**box, "views": [view]})
+cameras("empty", {**box, "views": [view]})
+cameras("no-z", {**box, "views": [{**view, "depth": "c.png"}]})
+os.mkdir("i-bare"); s("i-bare", {**scene, "plants": [{"images": "i-bare"}]})
+s("i-file", {**scene, "plants": [{"images": "s-good.json"}]})
+s("i-both", {**scene, "plants": [{"images": "i-bare", "generator": "oak"}]})
+s("i-grid", {**scene, "plants": [{"images": "i-bare", "coloring": {"grid": 257}}]})
+s("i-alone", {**scene, "plants": [{"generator": "oak", "coloring": {}}]})
+
 lines = open(f"{top}/tests/results-v1/cells.jsonl").read().split("\n")
 head, line = lines[0], lines[1]
 def r(name, data): put(f"r-{name}/cells.jsonl", data)
@@ -120,6 +147,12 @@ def png(width, height): return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pac
                                 chunk(b"IDAT", zlib.compress(b"0")) + chunk(b"IEND", b""))
 put("wide.png", png(2 ** 31 - 1, 2 ** 31 - 1)); put("thin.png", png(8000, 8000)); put("cut.png", png(2, 2)[:40]); put("empty.png", "")
 put("noise.exr", b"\x76\x2f\x31\x01" + bytes(range(200))); put("words.png", "words")
+def white(width, height):
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress((b"\0" + b"\xff" * 3 * width) * height)) + chunk(b"IEND", b""))
+for name in ("sizes", "empty", "no-z"):
+    put(f"i-{name}/c.png", white(4, 4)); put(f"i-{name}/d.png", white(4, 5 if name == "sizes" else 4))
+put("i-words/c.png", "words"); put("i-words/d.png", "words")
 plugin = open(f"{os.environ['PLUGINS']}/bad.so", "rb").read()
 for size in (0, 10, 100, 1000, 9000):
     put(f"cut-{size}/bad.so", plugin[:size])
@@ -211,6 +244,26 @@ draw '10^11 elements of a PLY' 65 'count.ply: ends after 1 of 99999999999' count
 draw 'a PLY list of 2^32 numbers' 65 'list.ply: ' list.ply
 try render --scene s-good.gltf.json --method polygons --trees 1 --size 16x12 -o x.png -q
 is 'the good glTF among them is drawn' $rc -eq 0 -a -s x.png
+draw 'no cameras.json' 66 'i-bare/cameras.json: No such file' i-bare
+draw 'a file instead of a folder' 74 's-good.json/cameras.json: ' i-file
+draw 'a cameras.json cut short' 65 'i-cut/cameras.json:1: not JSON' i-cut
+draw 'no view' 65 'i-none/cameras.json: views: has 0 elements; allowed: 1..64' i-none
+draw '65 views' 65 'i-many/cameras.json: views: has 65 elements; allowed: 1..64' i-many
+draw 'a flat box' 65 'maximum_m: value is -1 along y, minimum_m is -1; allowed: above it' i-flat
+draw 'an unknown key of a view' 65 'views.0..roll: is not a key' i-key
+draw 'a camera that looks nowhere' 65 'views.0..direction: value is .0, 0, 0.; allowed: any other' i-still
+draw 'a camera whose top is before it' 65 'views.0..up: is along direction; allowed: across it' i-up
+draw 'a view of 180 degrees' 65 'views.0..fov_y_deg: value is 180; allowed: 0.1..170' i-wide
+draw 'a fisheye' 65 "views.0..kind: value is 'fisheye'; allowed: pinhole.orthographic" i-kind
+draw 'a picture that is not there' 66 'i-absent/c.png: No such file' i-absent
+draw 'a picture that is a pipe' 65 'pipe: is not a regular file' i-pipe
+draw 'words instead of a picture' 65 'i-words/c.png: no picture' i-words
+draw 'a depth of another size' 65 'd.png: is 4 x 5 pixels, .*c.png 4 x 4; allowed: the same size' i-sizes
+draw 'a depth in a picture that has none' 65 'c.png: has no channel Z' i-no-z
+draw 'pictures of nothing' 65 'i-empty: no voxel is coloured: 0 are carved' i-empty
+scene 'images beside a generator' 65 'plants.0..generator: stands beside images; allowed: either' s-i-both.json
+scene 'a grid of 257' 65 'coloring.grid: value is 257; allowed: 2..256' s-i-grid.json
+scene 'a coloring without images' 65 'plants.0..coloring: stands without images' s-i-alone.json
 
 # 3. Plans.
 plan() { refuses "$1" 65 "$2" run "$3" --dry-run; }

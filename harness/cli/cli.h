@@ -22,6 +22,7 @@ int verb_help(int argc, char **argv);
 int verb_run(int argc, char **argv);
 int verb_render(int argc, char **argv);
 int verb_reference(int argc, char **argv);
+int verb_views(int argc, char **argv);
 int verb_diff(int argc, char **argv);
 int verb_report(int argc, char **argv);
 int verb_calibrate(int argc, char **argv);

@@ -7,6 +7,7 @@ const struct verb verbs[] = {
     {"list", "list methods, scenes, metrics or plants", verb_list},
     {"render", "draw one view of a cell to an EXR or PNG file", verb_render},
     {"reference", "ray trace one view to an EXR or PNG file", verb_reference},
+    {"views", "ray trace pictures with depth around a plant", verb_views},
     {"diff", "compare two pictures by every metric", verb_diff},
     {"calibrate", "measure what this machine can do at most", verb_calibrate},
     {"conform", "check that methods and plugins keep the contract", verb_conform},

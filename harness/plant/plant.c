@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "plant/generator.h"
+#include "plant/images.h"
 #include "plant/import.h"
 
 #include <stdalign.h>
@@ -15,7 +16,9 @@ struct plant {
     const struct generator *generator; /* NULL: a file or a given mesh */
     alignas(max_align_t) unsigned char options[GENERATOR_OPTIONS_SIZE];
     struct import_request *import; /* NULL: not a file */
-    const struct mesh *mesh;       /* NULL: not built yet */
+    const char *folder;            /* of pictures; NULL: not from pictures */
+    struct coloring_request coloring;
+    const struct mesh *mesh; /* NULL: not built yet */
     bool hashed;
     uint64_t hash;
     struct plant_cost cost;
@@ -80,6 +83,16 @@ enum status plant_file(struct arena *arena, const char *path, const struct plant
     return STATUS_OK;
 }
 
+struct plant *plant_images(struct arena *arena, const char *folder,
+                           const struct coloring_request *request)
+{
+    const char *slash = strrchr(folder, '/');
+    struct plant *plant = plant_new(arena, slash ? slash + 1 : folder);
+    plant->folder = arena_strdup(arena, folder);
+    plant->coloring = *request;
+    return plant;
+}
+
 struct plant *plant_from_mesh(struct arena *arena, const char *name, const struct mesh *mesh)
 {
     struct plant *plant = plant_new(arena, name);
@@ -110,7 +123,9 @@ enum status plant_mesh(struct plant *plant, const struct mesh **mesh, struct err
             if (status != STATUS_OK)
                 return error_context(error, "plant %s", plant->name);
         } else {
-            status = import_mesh(plant->arena, plant->import, &built, error);
+            status = plant->folder
+                         ? images_mesh(plant->arena, plant->folder, &plant->coloring, &built, error)
+                         : import_mesh(plant->arena, plant->import, &built, error);
             if (status != STATUS_OK)
                 return status;
         }
@@ -169,6 +184,10 @@ enum status plant_hash(struct plant *plant, uint64_t *hash, struct error *error)
             plant->hash = hash_generated(plant);
         } else if (plant->import) {
             enum status status = import_hash(plant->import, &plant->hash, error);
+            if (status != STATUS_OK)
+                return status;
+        } else if (plant->folder) {
+            enum status status = images_hash(plant->folder, &plant->coloring, &plant->hash, error);
             if (status != STATUS_OK)
                 return status;
         } else {

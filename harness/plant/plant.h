@@ -32,6 +32,12 @@ struct plant_import {
 enum status plant_file(struct arena *arena, const char *path, const struct plant_import *import,
                        struct plant **plant, struct error *error);
 
+struct coloring_request;
+/* Pictures with depth of a folder (plant/images.h), coloured into voxels of the folder's box and
+ * drawn as a rectangle a voxel. The folder is read only by plant_mesh and plant_hash. */
+struct plant *plant_images(struct arena *arena, const char *folder,
+                           const struct coloring_request *request);
+
 /* A mesh made by the caller (tests, other rooms); it is used as it is and must outlive the plant.
  */
 struct plant *plant_from_mesh(struct arena *arena, const char *name, const struct mesh *mesh);

@@ -27,20 +27,37 @@ static void describe_import(struct arena *arena, struct json *plant, struct plan
         json_fail(plant, "import", "stands without a file; allowed: together with file");
 }
 
+static void describe_coloring(struct json *plant, struct plant_entry *entry)
+{
+    struct json *coloring = json_object(plant, "coloring");
+    entry->coloring.grid = (int)json_integer(coloring, "grid", 128, 2, COLORING_GRID_MAX);
+    entry->coloring.binary = json_bool(coloring, "binary", false);
+    entry->coloring.agreement = (float)json_number(coloring, "agreement", 1, 0, 1);
+    entry->coloring.see_through = (float)json_number(coloring, "see_through", 1, 0, 1);
+    if (coloring && !entry->images)
+        json_fail(plant, "coloring", "stands without images; allowed: together with images");
+}
+
 static void describe_plant(struct arena *arena, struct json *plant, struct plant_entry *entry,
                            const char *scene_path)
 {
     entry->generator = json_text(plant, "generator", NULL);
     entry->options = json_text(plant, "options", NULL);
     entry->file = describe_path(arena, scene_path, json_text(plant, "file", NULL));
-    if (!entry->generator == !entry->file)
-        json_fail(plant, "generator", "%s; allowed: either a generator or a file",
-                  entry->file ? "stands beside a file" : "is missing, and so is a file");
-    if (entry->file && entry->options)
+    entry->images = describe_path(arena, scene_path, json_text(plant, "images", NULL));
+    if (!entry->generator + !entry->file + !entry->images != 2)
+        json_fail(plant, "generator", "%s; allowed: either a generator, a file or images",
+                  entry->file     ? "stands beside a file"
+                  : entry->images ? "stands beside images"
+                                  : "is missing, and so are a file and images");
+    if (!entry->generator && entry->options)
         json_fail(plant, "options", "value is '%.64s'; allowed: with a generator only",
                   entry->options);
     describe_import(arena, plant, entry);
-    const char *fallback = entry->generator ? entry->generator : json_text(plant, "file", "");
+    describe_coloring(plant, entry);
+    const char *fallback = entry->generator ? entry->generator
+                           : entry->file    ? json_text(plant, "file", "")
+                                            : json_text(plant, "images", "");
     entry->name = json_text(plant, "name", fallback);
     entry->weight = (float)json_number(plant, "weight", 1, 0, 1e6);
     entry->scale[0] = entry->scale[1] = 1;

@@ -3,6 +3,7 @@
 #ifndef TREELINE_SCENE_DESCRIPTION_H
 #define TREELINE_SCENE_DESCRIPTION_H
 
+#include "plant/coloring.h"
 #include "scene/scene.h"
 
 enum { TREES_MAX = 4000000, SIDE_PX_MAX = 16384, TERRAIN_SAMPLES_MAX = 4097 };
@@ -10,8 +11,10 @@ enum { TREES_MAX = 4000000, SIDE_PX_MAX = 16384, TERRAIN_SAMPLES_MAX = 4097 };
 struct plant_entry {
     const char *name;
     const char *generator, *options; /* a generated plant; options may be NULL */
-    const char *file;                /* or a mesh's path; the other one is NULL */
+    const char *file;                /* or a mesh's path */
+    const char *images;              /* or a folder of pictures; two of the three are NULL */
     struct plant_import import;
+    struct coloring_request coloring; /* of images; the box is the folder's */
     float weight, scale[2];
     float reach_m; /* no vertex is farther from the foot, at scale 1 */
 };

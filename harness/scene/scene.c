@@ -49,6 +49,17 @@ static enum status request_apply(struct description *description,
     return STATUS_OK;
 }
 
+static enum status plant_make(struct arena *arena, const struct plant_entry *entry,
+                              struct plant **plant, struct error *error)
+{
+    if (entry->file)
+        return plant_file(arena, entry->file, &entry->import, plant, error);
+    if (entry->generator)
+        return plant_generated(arena, entry->generator, entry->options, plant, error);
+    *plant = plant_images(arena, entry->images, &entry->coloring);
+    return STATUS_OK;
+}
+
 /* Every plant is made, so that a wrong one is told; those without a tree are left out. */
 static enum status species_build(struct arena *arena, const struct description *description,
                                  struct scene *scene, struct error *error)
@@ -62,9 +73,7 @@ static enum status species_build(struct arena *arena, const struct description *
     for (size_t k = 0; k < plants_count; k++) {
         const struct plant_entry *entry = &description->plants[k];
         struct plant *plant = NULL;
-        enum status status =
-            entry->file ? plant_file(arena, entry->file, &entry->import, &plant, error)
-                        : plant_generated(arena, entry->generator, entry->options, &plant, error);
+        enum status status = plant_make(arena, entry, &plant, error);
         if (status != STATUS_OK)
             return error_context(error, "%s: plants[%zu]", description->path, k);
         if (used[k] == 0)

@@ -50,6 +50,10 @@ void texture_sample(const struct texture *texture, const float uv[2], float rgba
 /* u, v of a point of a triangle from its weights. */
 void mesh_uv(const struct mesh *mesh, uint32_t triangle, float u, float v, float uv[2]);
 
+/* Albedo of the point that a packet's lane has hit on a surface. */
+void surface_albedo(const struct surface *surface, const struct embree_packet *packet, int lane,
+                    float albedo[3]);
+
 /* What one picture is made of; read by all threads. */
 struct picture {
     struct traced_scene traced;

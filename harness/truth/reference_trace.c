@@ -198,8 +198,8 @@ static void sights_find(const struct picture *picture, const struct embree_packe
     }
 }
 
-static void surface_albedo(const struct surface *surface, const struct embree_packet *packet,
-                           int lane, float albedo[3])
+void surface_albedo(const struct surface *surface, const struct embree_packet *packet, int lane,
+                    float albedo[3])
 {
     uint32_t primitive = packet->primitive[lane];
     float u = packet->u[lane], v = packet->v[lane];

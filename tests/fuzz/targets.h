@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "plan/names.h"
 #include "plan/settings.h"
+#include "plant/images.h"
 #include "plant/import_steps.h"
 #include "report/book.h"
 #include "results/calibration.h"
@@ -125,6 +126,26 @@ static void fuzz_placement(struct fuzz *fuzz)
     struct scene *scene = NULL;
     if (fuzz_accepted(fuzz, scene_load(fuzz->arena, path, &request, &scene, &fuzz->error), rows))
         fuzz_scene_check(scene);
+}
+
+/* The cameras of a folder of pictures: what is taken is orthonormal. */
+static void fuzz_cameras(struct fuzz *fuzz)
+{
+    const char *path = fuzz_file(fuzz, "cameras.json");
+    struct images images;
+    if (!fuzz_accepted(fuzz, images_describe(fuzz->arena, fuzz->folder, &images, &fuzz->error),
+                       path))
+        return;
+    for (size_t k = 0; k < images.views_count; k++) {
+        const struct depth_view *view = &images.views[k];
+        float unit = 0, across = 0;
+        for (int i = 0; i < 3; i++) {
+            unit += view->up[i] * view->up[i] + view->right[i] * view->right[i];
+            across += view->up[i] * view->forward[i] + view->right[i] * view->up[i];
+        }
+        if (!(unit > 1.999f && unit < 2.001f && across > -0.001f && across < 0.001f))
+            fuzz_fail("a camera that is taken is orthonormal", path);
+    }
 }
 
 /* A cell's name, taken, is read back as the same name. */
@@ -340,6 +361,7 @@ static const struct fuzz_target {
 } fuzz_targets[] = {
     {"scene", "scenes", false, fuzz_scene},
     {"placement", "scenes/placements", false, fuzz_placement},
+    {"cameras", "tests/fuzz/seeds/cameras", false, fuzz_cameras},
     {"plan", "scenes/plans", false, fuzz_plan},
     {"cell", "tests/fuzz/seeds/cell", false, fuzz_cell},
     {"options", "tests/fuzz/seeds/options", false, fuzz_options},
