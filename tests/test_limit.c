@@ -509,6 +509,7 @@ static void test_report__tables_and_roofline_tell_what_bounds_a_cell(void **stat
         "cells = dict(zip(*([c.strip() for c in table[i].split('|')] for i in (0, 2))))\n"
         "assert float(cells['of limit [%]']) == 50 and cells['bound by'] == 'triangles', cells\n"
         "assert len({line.count('|') for line in table}) == 1\n"
+        "assert 'triangles [M/s]' in cells and 'rays [M/s]' not in cells, cells\n"
         "tex = [l for l in open('tables/results.tex') if l.rstrip().endswith(chr(92) * 2)]\n"
         "assert len({line.count('&') for line in tex}) == 1 and '& triangles &' in tex[1]\n"
         "blocks = open('plots/roofline-tiny-7.dat').read().split('\\n\\n\\n')\n"

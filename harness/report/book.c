@@ -321,6 +321,24 @@ static void make_rows(struct book *book)
             index_of(book->methods, &book->methods_count, book->rows[i].method);
 }
 
+bool book_knows(const struct book *book, enum column_index column)
+{
+    for (size_t i = 0; i < book->rows_count; i++)
+        if (!isnan(book->rows[i].values[column]))
+            return true;
+    return false;
+}
+
+/* The frame's time stands in any case: it tells what failed. */
+static void choose_shown(struct book *book)
+{
+    book->shown = ARENA_ARRAY(book->arena, struct shown, shown_table_count);
+    for (size_t i = 0; i < shown_table_count; i++)
+        if (shown_table[i].column == COLUMN_frame_seconds ||
+            book_knows(book, shown_table[i].column))
+            book->shown[book->shown_count++] = shown_table[i];
+}
+
 struct book *book_make(struct arena *arena, const struct run *run)
 {
     struct book *book = ARENA_NEW(arena, struct book);
@@ -337,6 +355,7 @@ struct book *book_make(struct arena *arena, const struct run *run)
     find_groups(book);
     name_groups(book);
     book_find_laws(book);
+    choose_shown(book);
     return book;
 }
 

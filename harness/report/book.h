@@ -58,8 +58,8 @@ struct shown {
     const char *heading, *unit;
     double scale;
 };
-extern const struct shown shown_table[]; /* of the results table */
-extern const size_t shown_count;
+extern const struct shown shown_table[]; /* that a results table may have */
+extern const size_t shown_table_count;
 
 /* One cell. */
 struct row {
@@ -105,6 +105,8 @@ struct law {
 struct book {
     struct arena *arena;
     const struct run *run;
+    struct shown *shown; /* columns of the results table: those that a row has a value in */
+    size_t shown_count;
     const char *run_name;
     struct row *rows;
     size_t rows_count;
@@ -125,6 +127,8 @@ struct book {
 struct paper_beside;
 struct book *book_make(struct arena *arena, const struct run *run);
 void book_find_laws(struct book *book); /* by book_make */
+/* Any row has a value in the column. */
+bool book_knows(const struct book *book, enum column_index column);
 /* The group with the most trees of its family: what overviews show. */
 bool book_is_overview(const struct book *book, size_t group);
 /* Rows of a group on the front, fastest first; front holds group->rows_count places. */

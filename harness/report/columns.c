@@ -48,7 +48,7 @@ const struct shown shown_table[] = {
     {COLUMN_rays_per_second, "rays", "M/s", 1e-6},
     {COLUMN_lookups_per_second, "lookups", "M/s", 1e-6},
 };
-const size_t shown_count = sizeof shown_table / sizeof *shown_table;
+const size_t shown_table_count = sizeof shown_table / sizeof *shown_table;
 
 static const char not_measured[] = "\u2013";
 

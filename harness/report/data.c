@@ -115,9 +115,7 @@ static void put_columns(struct json_out *out, const struct book *book)
         json_put_text(out, "key", column->key);
         json_put_text(out, "unit", column->unit);
         json_put_text(out, "doc", column->doc);
-        bool known = false;
-        for (size_t i = 0; i < book->rows_count && !known; i++)
-            known = !isnan(book->rows[i].values[c]);
+        bool known = book_knows(book, (enum column_index)c);
         json_open(out, "values", '[');
         for (size_t i = 0; i < book->rows_count && known; i++)
             put_number(out, NULL, book->rows[i].values[c]);
@@ -126,12 +124,12 @@ static void put_columns(struct json_out *out, const struct book *book)
     }
     json_close(out);
     json_open(out, "shown", '[');
-    for (size_t i = 0; i < shown_count; i++) {
+    for (size_t i = 0; i < book->shown_count; i++) {
         json_open(out, NULL, '{');
-        json_put_number(out, "column", shown_table[i].column);
-        json_put_text(out, "heading", shown_table[i].heading);
-        json_put_text(out, "unit", shown_table[i].unit);
-        json_put_number(out, "scale", shown_table[i].scale);
+        json_put_number(out, "column", book->shown[i].column);
+        json_put_text(out, "heading", book->shown[i].heading);
+        json_put_text(out, "unit", book->shown[i].unit);
+        json_put_number(out, "scale", book->shown[i].scale);
         json_close(out);
     }
     json_close(out);

@@ -87,8 +87,8 @@ void markdown_text(FILE *out, const char *text)
 static void write_markdown(const struct book *book, FILE *out)
 {
     fputs("| scene | trees | method |", out);
-    for (size_t c = 0; c < shown_count; c++) {
-        const struct shown *shown = &shown_table[c];
+    for (size_t c = 0; c < book->shown_count; c++) {
+        const struct shown *shown = &book->shown[c];
         fprintf(out, *shown->unit ? " %s [%s] |" : " %s |", shown->heading, shown->unit);
         if (shown->column == COLUMN_frame_seconds)
             fputs(" 95 % interval [ms] |", out);
@@ -96,7 +96,8 @@ static void write_markdown(const struct book *book, FILE *out)
             fputs(" bound by |", out);
     }
     fputs(" front |\n|:--|--:|:--|", out);
-    for (size_t c = 0; c < shown_count + 2; c++)
+    size_t columns = book->shown_count + 1 + book_knows(book, COLUMN_limit_fraction);
+    for (size_t c = 0; c < columns; c++)
         fputs("--:|", out);
     fputs(":-:|\n", out);
     for (size_t i = 0; i < book->rows_count; i++) {
@@ -106,8 +107,8 @@ static void write_markdown(const struct book *book, FILE *out)
         fprintf(out, " | %zu | ", row->trees);
         markdown_text(out, row->label);
         fputs(" |", out);
-        for (size_t c = 0; c < shown_count; c++) {
-            const struct shown *shown = &shown_table[c];
+        for (size_t c = 0; c < book->shown_count; c++) {
+            const struct shown *shown = &book->shown[c];
             bool first = shown->column == COLUMN_frame_seconds;
             if (first && !row->ok)
                 fprintf(out, " %s |", state_word(row));
@@ -147,15 +148,15 @@ static void write_latex(const struct book *book, FILE *out)
 {
     fputs("% Needs \\usepackage{booktabs}. Bold: on the front of frame time and FLIP.\n", out);
     fputs("\\begin{tabular}{lrl", out);
-    for (size_t c = 0; c < shown_count; c++)
-        fputs(shown_table[c].column == COLUMN_limit_fraction ? "rl" : "r", out);
+    for (size_t c = 0; c < book->shown_count; c++)
+        fputs(book->shown[c].column == COLUMN_limit_fraction ? "rl" : "r", out);
     fputs("}\n\\toprule\nscene & trees & method", out);
-    for (size_t c = 0; c < shown_count; c++) {
+    for (size_t c = 0; c < book->shown_count; c++) {
         fputs(" & ", out);
-        tex_text(out, shown_table[c].heading);
-        if (*shown_table[c].unit)
-            fprintf(out, *shown_table[c].unit == '%' ? " [\\%s]" : " [%s]", shown_table[c].unit);
-        if (shown_table[c].column == COLUMN_limit_fraction)
+        tex_text(out, book->shown[c].heading);
+        if (*book->shown[c].unit)
+            fprintf(out, *book->shown[c].unit == '%' ? " [\\%s]" : " [%s]", book->shown[c].unit);
+        if (book->shown[c].column == COLUMN_limit_fraction)
             fputs(" & bound by", out);
     }
     fputs(" \\\\\n\\midrule\n", out);
@@ -166,11 +167,11 @@ static void write_latex(const struct book *book, FILE *out)
         fputs(row->summary->on_front ? "\\textbf{" : "", out);
         tex_text(out, row->label);
         fputs(row->summary->on_front ? "}" : "", out);
-        for (size_t c = 0; c < shown_count; c++) {
+        for (size_t c = 0; c < book->shown_count; c++) {
             fputs(" & ", out);
-            bool failed = !row->ok && shown_table[c].column == COLUMN_frame_seconds;
-            tex_text(out, failed ? state_word(row) : shown_number(row, &shown_table[c]).text);
-            if (shown_table[c].column == COLUMN_limit_fraction)
+            bool failed = !row->ok && book->shown[c].column == COLUMN_frame_seconds;
+            tex_text(out, failed ? state_word(row) : shown_number(row, &book->shown[c]).text);
+            if (book->shown[c].column == COLUMN_limit_fraction)
                 fprintf(out, " & %s", limit_word(row->summary->limit.resource));
         }
         fputs(" \\\\\n", out);

@@ -52,13 +52,13 @@ static void put_results_head(const struct page *page)
                     "<th scope=\"col\"><button>scene</button></th>"
                     "<th scope=\"col\" class=\"n\"><button>trees</button></th>"
                     "<th scope=\"col\"><button>method</button></th>");
-    for (size_t c = 0; c < shown_count; c++) {
+    for (size_t c = 0; c < page->book->shown_count; c++) {
         page_text(page, "<th scope=\"col\" class=\"n\"><button title=\"");
-        page_safe(page, column_table[shown_table[c].column].doc);
+        page_safe(page, column_table[page->book->shown[c].column].doc);
         page_text(page, "\">");
-        page_safe(page, shown_table[c].heading);
-        fprintf(page->out, *shown_table[c].unit ? " [%s]</button></th>" : "%s</button></th>",
-                shown_table[c].unit);
+        page_safe(page, page->book->shown[c].heading);
+        fprintf(page->out, *page->book->shown[c].unit ? " [%s]</button></th>" : "%s</button></th>",
+                page->book->shown[c].unit);
     }
     page_text(page, "</tr></thead><tbody>\n");
 }
@@ -97,8 +97,8 @@ void page_results(const struct page *page)
         fprintf(page->out, "<a class=\"cell\" href=\"#cell-%zu\">", i + 1);
         html_put_label(page->out, book, row);
         page_text(page, "</a></td>");
-        for (size_t c = 0; c < shown_count; c++)
-            put_number_cell(page, row, &shown_table[c]);
+        for (size_t c = 0; c < book->shown_count; c++)
+            put_number_cell(page, row, &book->shown[c]);
         page_text(page, "</tr>\n");
     }
     page_text(page, "</tbody></table></div>\n");
