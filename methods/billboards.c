@@ -6,6 +6,7 @@
 
 struct options {
     int views, layout, pick, resolution, alpha, filter, samples;
+    float near;
     bool depth;
 };
 
@@ -24,6 +25,8 @@ static const struct option table[] = {
                 "texels of pictures that are not magnified"),
     OPTION(struct options, samples, 4, 1, 8, "",
            "samples along a texel's side when pictures are baked"),
+    OPTION(struct options, near, 2, 0, 16, "radii",
+           "trees closer to the eye than so many of their radii are drawn by their triangles"),
     OPTION(struct options, depth, 0, 0, 1, "",
            "depth from the picture in each fragment, not from a plane"),
     OPTION_END,
@@ -68,7 +71,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     const struct options *options = values;
     struct state *state = *result = ARENA_NEW(workspace->arena, struct state);
     enum views_layout layout = (enum views_layout)options->layout;
-    struct atlas_request request = {
+    struct atlas_request atlas = {
         .layout = layout,
         .side = views_side(layout, (size_t)options->views),
         .resolution_px = resolution_of(options, workspace->lod),
@@ -77,8 +80,10 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .nearest = options->filter == 1,
         .depth = options->depth,
     };
-    state->side = (int)request.side;
-    enum status status = impostor_prepare(workspace, scene, &request, 1, &state->impostor);
+    state->side = (int)atlas.side;
+    struct impostor_request request = {
+        .atlas = atlas, .quads_each = 1, .near_radii = options->near};
+    enum status status = impostor_prepare(workspace, scene, &request, &state->impostor);
     return status == STATUS_OK ? programs(workspace, options, state) : status;
 }
 
@@ -111,7 +116,7 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
         draw_trees(workspace, state, view, state->hulls, 0, near);
         draw_trees(workspace, state, view, state->far_program, near, far);
     }
-    return impostor_end(workspace, state->impostor, target, "billboards");
+    return impostor_end(workspace, state->impostor, view, target, "billboards");
 }
 
 extern const struct method billboards_method;

@@ -7,6 +7,7 @@
 
 struct options {
     int planes, resolution, alpha, filter, samples;
+    float near;
     bool depth;
 };
 
@@ -20,6 +21,8 @@ static const struct option table[] = {
                 "texels of pictures that are not magnified"),
     OPTION(struct options, samples, 4, 1, 8, "",
            "samples along a texel's side when pictures are baked"),
+    OPTION(struct options, near, 2, 0, 16, "radii",
+           "trees closer to the eye than so many of their radii are drawn by their triangles"),
     OPTION(struct options, depth, 0, 0, 1, "",
            "depth from the picture in each fragment, not from the plane"),
     OPTION_END,
@@ -50,7 +53,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     const struct options *options = values;
     struct state *state = *result = ARENA_NEW(workspace->arena, struct state);
     bool halves = options->alpha == ATLAS_BLEND;
-    struct atlas_request request = {
+    struct atlas_request atlas = {
         .layout = VIEWS_PLANES,
         .side = (size_t)options->planes,
         .resolution_px = resolution_of(options, workspace->lod),
@@ -60,8 +63,10 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .depth = options->depth,
     };
     state->planes = (size_t)options->planes;
-    enum status status = impostor_prepare(workspace, scene, &request,
-                                          (halves ? 2 : 1) * state->planes, &state->impostor);
+    struct impostor_request request = {.atlas = atlas,
+                                       .quads_each = (halves ? 2 : 1) * state->planes,
+                                       .near_radii = options->near};
+    enum status status = impostor_prepare(workspace, scene, &request, &state->impostor);
     if (status == STATUS_OK)
         status = impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
                                   "VIEWS 1\nHALVES 0\nCORNERS 3\n", &state->far_program);
@@ -103,7 +108,7 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
     size_t far = list.count - near;
     draw_trees(workspace, state, view, !blend, 0, blend ? far : near);
     draw_trees(workspace, state, view, blend, blend ? far : near, blend ? near : far);
-    return impostor_end(workspace, state->impostor, target, "cross-quads");
+    return impostor_end(workspace, state->impostor, view, target, "cross-quads");
 }
 
 extern const struct method cross_quads_method;

@@ -108,7 +108,7 @@ static size_t left_of(struct arena *arena, const struct scene *scene, const stru
     struct sift_run run = {.set = set, .kept = (float)set->count, .growth = 1};
     struct sift_tree *trees = ARENA_ARRAY(arena, struct sift_tree, scene->instances_count);
     for (size_t i = 0; i < scene->instances_count; i++)
-        trees[i] = (struct sift_tree){&scene->instances[i], 0, 1, 0, 4, 3};
+        trees[i] = (struct sift_tree){&scene->instances[i], 0, 1, 0, 4, 3, false};
     struct sift *sift = sift_create(arena, threads, 4096);
     struct sift_vertex *vertices =
         ARENA_ARRAY(arena, struct sift_vertex, sift_vertices_count(sift));

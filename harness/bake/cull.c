@@ -17,6 +17,17 @@ struct cull_bound cull_bound_of(const struct mesh *mesh)
                                sqrtf(mesh->radius_m * mesh->radius_m + half * half)};
 }
 
+bool cull_cylinder_holds(const struct cull_cylinder *cylinder, const struct instance *instance,
+                         const float eye_m[3], float margin_m)
+{
+    const float *foot = instance->position_m;
+    float x = eye_m[0] - foot[0], y = eye_m[1] - foot[1], z = eye_m[2] - foot[2];
+    float reach_m = instance->scale * cylinder->radius_m + margin_m;
+    return x * x + z * z <= reach_m * reach_m &&
+           y >= instance->scale * cylinder->low_m - margin_m &&
+           y <= instance->scale * cylinder->high_m + margin_m;
+}
+
 struct cull *cull_create(struct arena *arena, const struct scene *scene,
                          const struct cull_bound *bounds)
 {

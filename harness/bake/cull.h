@@ -13,6 +13,14 @@ struct cull_bound {
 };
 struct cull_bound cull_bound_of(const struct mesh *mesh);
 
+/* The cylinder about its axis that holds a plant of scale 1. */
+struct cull_cylinder {
+    float low_m, high_m, radius_m;
+};
+/* Whether a tree's cylinder, margin_m wider and longer at both ends, holds the eye. */
+bool cull_cylinder_holds(const struct cull_cylinder *cylinder, const struct instance *instance,
+                         const float eye_m[3], float margin_m);
+
 enum cull_order { CULL_AS_PLACED, CULL_FRONT_TO_BACK, CULL_BACK_TO_FRONT };
 
 /* The spheres of a scene's instances, laid out for fast tests, and room for the lists. */

@@ -18,6 +18,9 @@ struct sunlight {
 /* Most trees that are drawn with the polygon of ATLAS_HULL corners at a time. */
 enum { HULLS_MOST = 65536, BUFFERS = 5 };
 
+/* A pixel, of ATLAS_COVERAGE. */
+enum { COVERAGE_SAMPLES = 4 };
+
 /* Fans between two flushes, at least; flushes of a draw, at most. */
 enum { FLUSH_LEAST = 2500, FLUSHES_MOST = 8 };
 
@@ -84,17 +87,18 @@ static float mean_area(const struct scene *scene, const struct atlas *atlas)
 }
 
 enum status impostor_prepare(struct workspace *workspace, const struct scene *scene,
-                             const struct atlas_request *request, size_t quads_each,
-                             struct impostor **result)
+                             const struct impostor_request *request, struct impostor **result)
 {
     struct gl *gl = workspace->gl;
     struct impostor *impostor = *result = ARENA_NEW(workspace->arena, struct impostor);
     impostor->scene = scene;
-    impostor->alpha = request->alpha;
-    impostor->nearest = request->nearest;
+    impostor->alpha = request->atlas.alpha;
+    impostor->nearest = request->atlas.nearest;
     enum status status = backdrop_prepare(workspace, scene, &impostor->backdrop);
     if (status == STATUS_OK)
-        status = atlas_build(workspace, scene, request, &impostor->atlas);
+        status = atlas_build(workspace, scene, &request->atlas, &impostor->atlas);
+    if (status == STATUS_OK)
+        status = nearby_prepare(workspace, scene, request->near_radii, &impostor->nearby);
     if (status != STATUS_OK)
         return status;
     struct cull_bound *bounds =
@@ -106,7 +110,7 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     size_t count = scene->instances_count;
     impostor->cull = cull_create(workspace->arena, scene, bounds);
     impostor->area_m2 = mean_area(scene, impostor->atlas);
-    impostor->fans_quad = count * quads_each;
+    impostor->fans_quad = count * request->quads_each;
     impostor->fans_hull = impostor->fans_quad < HULLS_MOST ? impostor->fans_quad : HULLS_MOST;
     impostor->instances_buffer = upload_trees(gl, scene);
     impostor->order_buffer =
@@ -171,7 +175,7 @@ static enum status twin(struct workspace *workspace, struct impostor *impostor,
         gl_delete_texture(workspace->gl, twin->depth);
     }
     memset(twin, 0, sizeof *twin);
-    return gl_target_multisample(workspace->gl, target, 4, twin, workspace->error);
+    return gl_target_multisample(workspace->gl, target, COVERAGE_SAMPLES, twin, workspace->error);
 }
 
 /* What one species' channels give in a picture under a sun in the plant's own axes. */
@@ -216,6 +220,13 @@ static void relight(struct impostor *impostor, struct gl *gl, const float sun[3]
     arena_destroy(scratch);
 }
 
+static enum status draw_near(struct workspace *workspace, const struct impostor *impostor,
+                             const struct view *view)
+{
+    int samples = impostor->alpha == ATLAS_COVERAGE ? COVERAGE_SAMPLES : 1;
+    return nearby_draw(workspace, impostor->nearby, view, samples, impostor->cull);
+}
+
 enum status impostor_begin(struct workspace *workspace, struct impostor *impostor,
                            const struct view *view, struct target *target, struct cull_list *list)
 {
@@ -231,17 +242,19 @@ enum status impostor_begin(struct workspace *workspace, struct impostor *imposto
     backdrop_draw(workspace, impostor->backdrop, view);
     gl->Flush(); /* a software GL fills the backdrop while the trees are culled and sorted */
     relight(impostor, gl, view->sun_direction);
-    *list = cull_view(impostor->cull, view,
-                      impostor->alpha == ATLAS_BLEND ? CULL_BACK_TO_FRONT : CULL_FRONT_TO_BACK);
+    bool blend = impostor->alpha == ATLAS_BLEND;
+    enum cull_order order = blend ? CULL_BACK_TO_FRONT : CULL_FRONT_TO_BACK;
+    *list = cull_view(impostor->cull, view, order);
+    nearby_take(impostor->nearby, view, order, list);
     if (list->count > 0)
         gl->NamedBufferSubData(impostor->order_buffer, 0,
                                (GLsizeiptr)(list->count * sizeof *list->instances),
                                list->instances);
-    if (impostor->alpha == ATLAS_BLEND) {
-        gl->Enable(GL_BLEND);
-        gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-        gl->DepthMask(GL_FALSE);
-    }
+    if (!blend)
+        return draw_near(workspace, impostor, view);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gl->DepthMask(GL_FALSE);
     return STATUS_OK;
 }
 
@@ -307,11 +320,14 @@ size_t impostor_near_count(const struct impostor *impostor, const struct view *v
 }
 
 enum status impostor_end(struct workspace *workspace, const struct impostor *impostor,
-                         struct target *target, const char *where)
+                         const struct view *view, struct target *target, const char *where)
 {
     struct gl *gl = workspace->gl;
+    enum status status = STATUS_OK;
     gl->Disable(GL_BLEND);
     gl->DepthMask(GL_TRUE);
+    if (impostor->alpha == ATLAS_BLEND)
+        status = draw_near(workspace, impostor, view);
     gl->BindVertexArray(0);
     gl->UseProgram(0);
     for (GLuint i = 0; i < 3; i++)
@@ -320,5 +336,5 @@ enum status impostor_end(struct workspace *workspace, const struct impostor *imp
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
     if (impostor->alpha == ATLAS_COVERAGE)
         gl_target_resolve(gl, &impostor->multisampled, target);
-    return gl_check(gl, where, workspace->error);
+    return status == STATUS_OK ? gl_check(gl, where, workspace->error) : status;
 }

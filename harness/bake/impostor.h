@@ -17,6 +17,7 @@
 #include "bake/atlas.h"
 #include "bake/backdrop.h"
 #include "bake/cull.h"
+#include "bake/nearby.h"
 
 /* Rotations of a tree that its light is computed for: 1.4 degrees apart. */
 enum { IMPOSTOR_SUN_STEPS = 256 };
@@ -26,6 +27,7 @@ struct impostor {
     struct atlas *atlas;
     struct cull *cull;
     struct backdrop *backdrop;
+    struct nearby *nearby;
     enum atlas_alpha alpha;
     bool nearest;    /* texels of minified pictures */
     GLuint vertices; /* no attributes; the index buffer of fans */
@@ -38,10 +40,15 @@ struct impostor {
     float area_m2;              /* mean silhouette area of the trees */
 };
 
-/* The scene's part: backdrop, atlas, trees, index buffer for quads_each quads a tree. */
+struct impostor_request {
+    struct atlas_request atlas;
+    size_t quads_each; /* a tree */
+    float near_radii;  /* nearby.h */
+};
+
+/* The scene's part: backdrop, atlas, trees, index buffer. */
 enum status impostor_prepare(struct workspace *workspace, const struct scene *scene,
-                             const struct atlas_request *request, size_t quads_each,
-                             struct impostor **impostor);
+                             const struct impostor_request *request, struct impostor **impostor);
 
 /* Links impostor.glsl and a method's own source; defines may be NULL. Adds ALPHA_TEST,
  * ALPHA_COVERAGE, DEPTH, FOG. */
@@ -50,8 +57,8 @@ enum status impostor_program(struct workspace *workspace, const struct impostor 
                              GLuint *program);
 
 /* Binds target (or its multisampled twin), draws the backdrop, culls, sorts (back to
- * front for blending, else front to back) and uploads the order. Returns the list of trees to draw.
- */
+ * front for blending, else front to back) and uploads the order. Near trees are drawn as triangles,
+ * before the others, or after them where those are blended. Returns the list of the others. */
 enum status impostor_begin(struct workspace *workspace, struct impostor *impostor,
                            const struct view *view, struct target *target, struct cull_list *list);
 
@@ -73,9 +80,8 @@ enum { IMPOSTOR_HULL_PX = 6000 };
 size_t impostor_near_count(const struct impostor *impostor, const struct view *view,
                            const struct cull_list *list, float area_px, size_t hulls_each);
 
-/* Resolves and restores the state that backdrop_draw
- * leaves. */
+/* Ends the picture and restores the state that backdrop_draw leaves. */
 enum status impostor_end(struct workspace *workspace, const struct impostor *impostor,
-                         struct target *target, const char *where);
+                         const struct view *view, struct target *target, const char *where);
 
 #endif

@@ -11,6 +11,14 @@ struct sampling {
     struct sampling_places places;
 };
 
+struct sampling_places sampling_places_bound(struct gl *gl, int samples)
+{
+    struct sampling_places places = {.count = samples, .at = {{0.5f, 0.5f}}};
+    for (int i = 0; i < samples && samples > 1; i++)
+        gl->GetMultisamplefv(GL_SAMPLE_POSITION, (GLuint)i, places.at[i]);
+    return places;
+}
+
 enum status sampling_prepare(struct workspace *workspace, int samples, struct sampling **sampling)
 {
     struct gl *gl = workspace->gl;
@@ -45,8 +53,8 @@ enum status sampling_begin(struct workspace *workspace, struct sampling *samplin
             gl_target_multisample(gl, &enlarged, sampling->samples_texel, twin, workspace->error);
     }
     gl->BindFramebuffer(GL_FRAMEBUFFER, twin->framebuffer);
-    for (int i = 0; i < sampling->places.count && status == STATUS_OK; i++)
-        gl->GetMultisamplefv(GL_SAMPLE_POSITION, (GLuint)i, sampling->places.at[i]);
+    if (status == STATUS_OK)
+        sampling->places = sampling_places_bound(gl, sampling->samples_texel);
     return status;
 }
 

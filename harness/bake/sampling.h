@@ -12,6 +12,9 @@ struct sampling_places {
     float at[SAMPLING_PLACES_MAX][2];
 };
 
+/* Of the bound framebuffer, which has so many samples a texel: 1 or a multisampled target's. */
+struct sampling_places sampling_places_bound(struct gl *gl, int samples);
+
 struct sampling;
 
 /* samples: 1 draws into the target itself; 4 into a multisampled twin; 16 too where the driver has

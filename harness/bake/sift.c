@@ -178,7 +178,7 @@ static void fill_band(const struct sift *sift, struct band *band, struct sift_ve
         bool begun = band->run > 0 || band->element > 0;
         if (!begun && !sift_tree_seen(&work, tree, tree_is_large(sift, tree)))
             continue;
-        sift_tree_set(&work, tree->instance);
+        sift_tree_set(&work, tree);
         for (; band->run < tree->runs_count; band->run++)
             if (!sift_one_run(sift, band, &work, &sift->runs[tree->first_run + band->run])) {
                 memcpy(band->filled, work.filled, sizeof band->filled);

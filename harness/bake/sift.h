@@ -29,7 +29,7 @@ struct sift_set {
     float *x, *y, *z, *radius_m;  /* count each: a sphere that holds the element */
     uint32_t *first;              /* count + 1: its triangles; at most SIFT_TRIANGLES */
     struct sift_vertex *vertices; /* 3 a triangle */
-    bool closed;                  /* a closed surface: back faces are never seen */
+    bool closed;                  /* a closed surface: back faces are not seen from without */
     int stream;                   /* where what is left goes, below SIFT_STREAMS */
 };
 enum { SIFT_TRIANGLES = 4, SIFT_STREAMS = 3 };
@@ -54,6 +54,7 @@ struct sift_tree {
     const struct instance *instance;
     size_t first_run, runs_count;
     float low_m, high_m, radius_m; /* the cylinder about its axis that holds it, at scale 1 */
+    bool within; /* the eye may be within it: back faces of closed surfaces are seen */
 };
 
 struct sift;

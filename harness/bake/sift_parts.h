@@ -24,6 +24,7 @@ struct sift_work {
     struct sift_vertex *out[SIFT_STREAMS];
     size_t filled[SIFT_STREAMS]; /* triangles */
     int stream;                  /* of the run at work */
+    bool within;                 /* of the tree at work */
     float turn[2], scale, place[3];
     float rows[3][4]; /* from the plant to the screen */
 };
@@ -35,7 +36,7 @@ void sift_project(const struct sift_screen *screen, const float world_m[3], floa
 /* Whether the tree may meet the band's rows; where `look` is set, any sample that nothing nearer
  * covers yet. */
 bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, bool look);
-void sift_tree_set(struct sift_work *work, const struct instance *instance);
+void sift_tree_set(struct sift_work *work, const struct sift_tree *tree);
 
 /* `count` elements, at most SIFT_BLOCK, of the set from `at` on; rank: the first one's place in the
  * run. */

@@ -159,12 +159,14 @@ bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, 
     return false;
 }
 
-void sift_tree_set(struct sift_work *work, const struct instance *instance)
+void sift_tree_set(struct sift_work *work, const struct sift_tree *tree)
 {
+    const struct instance *instance = tree->instance;
     float c = cosf(instance->rotation_rad), s = sinf(instance->rotation_rad);
     work->turn[0] = c;
     work->turn[1] = s;
     work->scale = instance->scale;
+    work->within = tree->within;
     memcpy(work->place, instance->position_m, sizeof work->place);
     for (int i = 0; i < 3; i++) {
         const float *row = work->screen->rows[i];
@@ -346,7 +348,7 @@ static void sift_element(struct sift_work *work, const struct sift_run *run, siz
             p.y[i] = (m[1][0] * x + m[1][1] * y + m[1][2] * z + m[1][3]) * inverse;
             close |= !(p.w[i] > work->screen->near_m);
         }
-        if (!close && !triangle_seen(work, &p, set->closed))
+        if (!close && !triangle_seen(work, &p, set->closed && !work->within))
             continue;
         put_triangle(work, corners, center, size, run->growth);
     }
