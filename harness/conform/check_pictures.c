@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double COVERAGE_FACTOR = 3;
-
 static enum status check_empty(struct subject *subject)
 {
     struct trial_request request = {.format = TARGET_RGBA32F};
@@ -34,46 +32,6 @@ static enum status check_empty(struct subject *subject)
     }
     trial_close(&trial);
     return status;
-}
-
-enum status trial_covers(struct trial *trial, const struct frame *frame, const struct view *view)
-{
-    struct frame *reference;
-    enum status status = trial_reference(trial, view, trial->workspace.effects, &reference);
-    if (status)
-        return status;
-    double drawn = frame_coverage(frame), true_coverage = frame_coverage(reference);
-    subject_note(trial->subject, "coverage %.3g, reference %.3g", drawn, true_coverage);
-    if (drawn > COVERAGE_FACTOR * true_coverage || drawn < true_coverage / COVERAGE_FACTOR)
-        return subject_fail(trial->subject, "coverage is %.3g, the reference's %.3g", drawn,
-                            true_coverage);
-    return STATUS_OK;
-}
-
-enum status trial_bounded(struct trial *trial, const struct frame *frame, const struct view *view)
-{
-    const struct instance *tree = trial->scene->instances;
-    float focal_px = 0.5f * (float)view->height_px / tanf(0.5f * view->fov_y_rad), middle[3];
-    float reach_m = tree->scale * (float)(0.65 * WORLD_TREE_M), distance2 = 0;
-    for (int i = 0; i < 3; i++) {
-        middle[i] = tree->position_m[i] - view->eye_m[i];
-        middle[i] += i == 1 ? tree->scale * (float)(0.5 * WORLD_TREE_M) : 0;
-        distance2 += middle[i] * middle[i];
-    }
-    reach_m += 2 * sqrtf(distance2) / focal_px;
-    for (int y = 0; y < frame->height_px; y++)
-        for (int x = 0; x < frame->width_px; x++) {
-            float ray[3], along = 0;
-            view_ray(view, (float)x + 0.5f, (float)y + 0.5f, ray);
-            for (int i = 0; i < 3; i++)
-                along += ray[i] * middle[i];
-            float alpha = frame->rgba[4 * ((size_t)y * (size_t)frame->width_px + (size_t)x) + 3];
-            if (alpha > 0.01f && distance2 - along * along > reach_m * reach_m)
-                return subject_fail(trial->subject,
-                                    "pixel %d, %d has coverage %.3g, far from the only tree", x, y,
-                                    (double)alpha);
-        }
-    return STATUS_OK;
 }
 
 static enum status one_tree(struct subject *subject, const char *file)

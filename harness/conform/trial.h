@@ -49,8 +49,19 @@ enum status trial_reference(struct trial *trial, const struct view *view, unsign
 enum status trial_picture(struct subject *subject, const struct trial_request *request,
                           const struct view *view, struct frame **frame);
 
-/* The picture's coverage is the reference's, within a factor of 3: a representation may be fatter
- * or thinner than the truth. */
+/* Pictures beside the reference's, summed: what chance and the places of samples do to one picture
+ * averages out. */
+struct likeness {
+    size_t pictures;
+    double coverage, reference; /* sums of mean alpha */
+    double blurred;             /* sum of the RMS difference of mean alpha over 8 x 8 pixels */
+};
+enum status trial_liken(struct trial *trial, const struct frame *frame, const struct view *view,
+                        struct likeness *likeness);
+/* Coverage is the reference's, within a sixth of it and so much more: a representation may be a
+ * little fatter or thinner than the truth. Notes both. */
+enum status likeness_covers(struct subject *subject, const struct likeness *likeness, double more);
+/* trial_liken and likeness_covers of one picture, with nothing more. */
 enum status trial_covers(struct trial *trial, const struct frame *frame, const struct view *view);
 /* Alpha is 0 outside of the ball that holds the world's first tree, with a margin of 2 pixels. */
 enum status trial_bounded(struct trial *trial, const struct frame *frame, const struct view *view);

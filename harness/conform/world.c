@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDES = 8, RINGS = 4, LEAVES = 1200, TRUNK_TRIANGLES = 2 * SIDES * RINGS };
-static const float TRUNK_M = 9, TRUNK_RADIUS_M = 0.5f, LEAF_M = 0.8f;
+enum { SIDES = 8, RINGS = 4, LEAVES = 1200, TRUNK_TRIANGLES = 2 * SIDES * RINGS + 2 * (SIDES - 2) };
+static const float ROOT_M = -0.3f, TRUNK_M = 9, TRUNK_RADIUS_M = 0.5f, LEAF_M = 0.8f;
 static const float CROWN_M[3] = {4, 7, 4}, CROWN_MIDDLE_M = 12.6f;
 static const float ALBEDOS[2][3] = {{0.25f, 0.18f, 0.12f}, {0.2f, 0.42f, 0.1f}};
 
@@ -27,13 +27,13 @@ static void triangle_add(struct mesh *mesh, uint32_t a, uint32_t b, uint32_t c)
     memcpy(mesh->triangles[mesh->triangles_count++], (uint32_t[3]){a, b, c}, sizeof(uint32_t[3]));
 }
 
-/* A cylinder, so that an eye within it stands in the trunk. */
+/* A closed cylinder that begins in the ground, so that an eye within it stands in the trunk. */
 static void trunk_add(struct mesh *mesh)
 {
     for (int ring = 0; ring <= RINGS; ring++)
         for (int side = 0; side < SIDES; side++) {
             float angle = 6.2831853f * (float)side / SIDES, x = sinf(angle), z = cosf(angle);
-            float y = TRUNK_M * (float)ring / RINGS;
+            float y = ROOT_M + (TRUNK_M - ROOT_M) * (float)ring / RINGS;
             vertex_add(mesh, (float[3]){TRUNK_RADIUS_M * x, y, TRUNK_RADIUS_M * z},
                        (float[3]){x, 0, z});
         }
@@ -43,6 +43,11 @@ static void trunk_add(struct mesh *mesh)
             triangle_add(mesh, a, b, b + SIDES);
             triangle_add(mesh, a, b + SIDES, a + SIDES);
         }
+    for (uint32_t side = 1; side + 1 < SIDES; side++) {
+        const uint32_t top = RINGS * SIDES;
+        triangle_add(mesh, 0, side + 1, side);
+        triangle_add(mesh, top, top + side, top + side + 1);
+    }
 }
 
 static void unit_random(struct random *random, float v[3])
@@ -161,21 +166,23 @@ enum status world_write(struct arena *arena, const char *folder, double offset_m
     return status ? status : scene_write(arena, folder, offset_m, path, error);
 }
 
-static void forest_make(struct arena *arena, struct scene *scene, size_t trees, float scale)
+static void forest_make(struct arena *arena, struct scene *scene, const struct world *world,
+                        float scale)
 {
-    size_t side = (size_t)ceil(sqrt((double)trees));
+    size_t trees = world->trees, side = (size_t)ceil(sqrt((double)trees));
+    double spacing_m = world->spacing_m > 0 ? world->spacing_m : 12;
     struct random random = random_seed(2, 1);
     scene->instances_count = trees;
     scene->instances = ARENA_ARRAY(arena, struct instance, trees);
     for (size_t k = 0; k < trees; k++) {
         struct instance *tree = &scene->instances[k];
         double middle = 0.5 * ((double)side - 1);
-        tree->position_m[0] = scale * (float)(WORLD_SPACING_M * ((double)(k % side) - middle));
-        tree->position_m[2] = scale * (float)(WORLD_SPACING_M * ((double)(k / side) - middle));
+        tree->position_m[0] = scale * (float)(spacing_m * ((double)(k % side) - middle));
+        tree->position_m[2] = scale * (float)(spacing_m * ((double)(k / side) - middle));
         tree->rotation_rad = 6.2831853f * random_float(&random);
         tree->scale = scale * (0.9f + 0.2f * random_float(&random));
     }
-    scene->forest_half_m = scale * (float)(0.5 * WORLD_SPACING_M * (double)side);
+    scene->forest_half_m = scale * (float)(0.5 * spacing_m * (double)side);
     scene->tree_reach_m = scale * 25;
 }
 
@@ -222,7 +229,7 @@ enum status world_make(struct arena *arena, const struct world *world, struct sc
     struct plant *plant = plant_from_mesh(arena, "tree", world_mesh(arena));
     scene->species = ARENA_NEW(arena, struct species);
     *scene->species = (struct species){"tree", plant, 1, 0.9f * scale, 1.1f * scale};
-    forest_make(arena, scene, world->trees, scale);
+    forest_make(arena, scene, world, scale);
     ground_make(arena, scene, scale);
     scene->camera = (struct camera_path){.kind = PATH_STILL,
                                          .keys_count = 1,
@@ -233,7 +240,7 @@ enum status world_make(struct arena *arena, const struct world *world, struct sc
     memcpy(key->eye_m, (float[3]){9 * scale, 14 * scale, 34 * scale}, sizeof key->eye_m);
     memcpy(key->target_m, (float[3]){0, 10 * scale, 0}, sizeof key->target_m);
     camera_depths(scene, &key->eye_m, 1, &scene->camera.near_m, &scene->camera.far_m);
-    scene->hash = hash_double(hash_u64(1, world->trees), scale);
+    scene->hash = hash_double(hash_double(hash_u64(1, world->trees), scale), world->spacing_m);
     return STATUS_OK;
 }
 

@@ -8,14 +8,14 @@
 struct world {
     size_t trees;
     double scale;            /* of every length; 0: 1 */
+    double spacing_m;        /* between trees before scaling; 0: 12 */
     int width_px, height_px; /* 0: 64 x 48 */
     const char *file;        /* of a scene; NULL: the world is made here */
 };
 
-/* A grid of trees, WORLD_SPACING_M apart before scaling, each turned and of a scale of its own,
+/* A grid of trees, each turned and of a scale of its own,
  * about the origin on a flat terrain. All effects are wanted; the fog is thin. A world of 1 tree
  * has it at the origin. STATUS_INVALID only for a file. */
-#define WORLD_SPACING_M 12.0
 enum status world_make(struct arena *arena, const struct world *world, struct scene **scene,
                        struct error *error);
 

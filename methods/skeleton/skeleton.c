@@ -1,4 +1,4 @@
-/* skeleton: one cone a tree, as wide and as high as its plant and of its mean colour. */
+/* skeleton: one double cone a tree, as wide and as high as its plant and of its mean colour. */
 #include "bake/backdrop.h"
 #include "method/method.h"
 
@@ -11,12 +11,12 @@ struct options {
 
 /* clang-format off */
 static const struct option table[] = {
-    OPTION(struct options, sides, 24, 3, 256, "", "triangles a cone at full detail"),
+    OPTION(struct options, sides, 24, 3, 256, "", "sides of a double cone at full detail"),
     OPTION_END,
 };
 /* clang-format on */
 
-/* A species: the size of its cone at scale 1, its colour, and where its trees begin in the buffer.
+/* A species: the size of its double cone at scale 1, its colour, and where its trees begin in the buffer.
  */
 struct kind {
     float radius_m, height_m, albedo[3];
@@ -128,7 +128,7 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
         gl->Uniform3fv(gl_uniform(gl, state->program, "albedo"), 1, kind->albedo);
         gl->VertexArrayVertexBuffer(state->cones, 0, state->feet,
                                     (GLintptr)(kind->first * sizeof(float[4])), sizeof(float[4]));
-        gl_draw_arrays(gl, GL_TRIANGLES, 0, 3 * state->sides, (GLsizei)kind->count);
+        gl_draw_arrays(gl, GL_TRIANGLES, 0, 6 * state->sides, (GLsizei)kind->count);
     }
     return gl_check(gl, "skeleton", workspace->error);
 }
@@ -137,7 +137,7 @@ extern const struct method skeleton_method;
 const struct method skeleton_method = {
     .abi = METHOD_ABI,
     .name = "skeleton",
-    .summary = "one cone a tree, of its plant's size and mean colour",
+    .summary = "one double cone a tree, of its plant's size and mean colour",
     .source = "this project",
     .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
     .options = table,

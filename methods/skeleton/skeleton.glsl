@@ -1,4 +1,5 @@
-// Cones: gl_VertexID counts the corners of SIDES triangles about the trunk, an instance is a tree.
+// Double cones: gl_VertexID counts the corners of 2 SIDES triangles about the trunk, upper and lower by turns; an
+// instance is a tree.
 #pragma stage vertex
 layout(location = 0) in vec4 foot;  // m; scale
 uniform vec2 size_m;                // radius and height at scale 1
@@ -7,13 +8,15 @@ out vec3 normal;
 
 void main()
 {
-    int corner = gl_VertexID % 3;  // the top, then two at the foot
-    float turn = float(gl_VertexID / 3) + (corner == 0 ? 0.5 : float(corner - 1));
+    int corner = gl_VertexID % 3;  // an end, then two about the middle
+    bool upper = gl_VertexID / 3 % 2 == 0;
+    float turn = float(gl_VertexID / 6) + (corner == 0 ? 0.5 : float((corner == 2) == upper));
     float angle = 6.283185307 * turn / float(SIDES);
     vec3 around = vec3(sin(angle), 0.0, cos(angle));
-    vec3 place = corner == 0 ? vec3(0.0, size_m.y, 0.0) : size_m.x * around;
+    vec3 place = vec3(0.0, corner > 0 ? 0.5 * size_m.y : upper ? size_m.y : 0.0, 0.0);
+    place += corner > 0 ? size_m.x * around : vec3(0.0);
     position_m = foot.xyz + foot.w * place;
-    normal = size_m.y * around + vec3(0.0, size_m.x, 0.0);
+    normal = 0.5 * size_m.y * around + vec3(0.0, upper ? size_m.x : -size_m.x, 0.0);
     gl_Position = view_projection * vec4(position_m, 1.0);
 }
 

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-/* From afar a cone is a triangle: radius times height, each seen at the distance. */
-static void test_skeleton__a_far_tree_covers_a_cones_triangle(void **unused)
+/* From afar a double cone is a rhombus: radius times height, each seen at the distance. */
+static void test_skeleton__a_far_tree_covers_a_double_cones_rhombus(void **unused)
 {
     (void)unused;
     struct arena *arena = arena_create(0);
@@ -42,7 +42,7 @@ static void test_skeleton__a_far_tree_covers_a_cones_triangle(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_skeleton__a_far_tree_covers_a_cones_triangle),
+        cmocka_unit_test(test_skeleton__a_far_tree_covers_a_double_cones_rhombus),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
