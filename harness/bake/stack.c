@@ -24,12 +24,13 @@ static enum status stack_program(struct workspace *workspace, struct stack *stac
 {
     const struct stack_request *request = &stack->request;
     struct arena *scratch = arena_create(0);
-    const char *defines =
-        arena_printf(scratch, "%s%s%s%s%s%s", request->trilinear ? "TRILINEAR 1\n" : "",
-                     request->straight ? "STRAIGHT 1\n" : "", request->rough ? "ROUGH 1\n" : "",
-                     request->interpolate ? "INTERPOLATE 1\n" : "",
-                     request->interpolate || request->smooth ? "POWER 1\n" : "",
-                     workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
+    const char *defines = arena_printf(
+        scratch, "%s%s%s%s%s%s%s%s", request->trilinear ? "TRILINEAR 1\n" : "",
+        request->straight ? "STRAIGHT 1\n" : "", request->rough ? "ROUGH 1\n" : "",
+        request->interpolate ? "INTERPOLATE 1\n" : "",
+        request->interpolate || request->smooth ? "POWER 1\n" : "",
+        request->turns > 0 ? "LIT 1\n" : "", request->ground != GROUND_UPRIGHT ? "BENT 1\n" : "",
+        workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
     enum status status =
         gl_program(workspace->gl, "stack", stack_glsl, defines, &stack->program, workspace->error);
     arena_destroy(scratch);
@@ -52,8 +53,8 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
     if (status != STATUS_OK)
         return status;
     struct cull_bound *bounds = ARENA_ARRAY(arena, struct cull_bound, scene->species_count + 1);
-    for (size_t i = 0; i < scene->species_count; i++)
-        bounds[i] = stack->plants[i].bound;
+    for (size_t i = 0; i < scene->instances_count; i++)
+        bounds[scene->instances[i].species] = stack_plant_of(stack, &scene->instances[i])->bound;
     stack->cull = cull_create(arena, scene, bounds);
     stack->trees = ARENA_ARRAY(arena, struct stack_tree, BATCH_PARTS);
     stack->quads = ARENA_ARRAY(arena, struct stack_quad, BATCH_QUADS);
@@ -61,6 +62,11 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
         gl_buffer(gl, BATCH_PARTS * sizeof *stack->trees, NULL, GL_DYNAMIC_STORAGE_BIT);
     stack->quads_buffer =
         gl_buffer(gl, BATCH_QUADS * sizeof *stack->quads, NULL, GL_DYNAMIC_STORAGE_BIT);
+    if (request->ground != GROUND_UPRIGHT) {
+        stack->bends = ARENA_ARRAY(arena, struct stack_bend, BATCH_PARTS);
+        stack->bends_buffer =
+            gl_buffer(gl, BATCH_PARTS * sizeof *stack->bends, NULL, GL_DYNAMIC_STORAGE_BIT);
+    }
     stack->vertices = gl_vertex_array(gl);
     gl->VertexArrayElementBuffer(stack->vertices, upload_indices(gl));
     return gl_check(gl, "stacks", workspace->error);
@@ -74,6 +80,7 @@ static void use_program(struct workspace *workspace, const struct stack *stack,
     gl->BindVertexArray(stack->vertices);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, stack->trees_buffer);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, stack->quads_buffer);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, stack->bends_buffer);
     shade_uniforms(workspace, stack->program, stack->scene, view);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -112,8 +119,12 @@ static struct fill fill_tree(const struct stack *stack, const struct view *view,
 {
     struct stack_part parts[PARTS_MOST];
     int count = stack_parts(stack, view, lod, instance, parts);
-    for (int k = 0; k < count; k++)
-        stack_tree_fill(stack, view, instance, &parts[k], &stack->trees[fill.parts + (size_t)k]);
+    for (int k = 0; k < count; k++) {
+        struct stack_tree *tree = &stack->trees[fill.parts + (size_t)k];
+        stack_tree_fill(stack, view, instance, &parts[k], tree);
+        if (stack->bends)
+            stack_bend_fill(stack, instance, tree, &stack->bends[fill.parts + (size_t)k]);
+    }
     for (int first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && parts[end].side == parts[first].side;)
             end++;
@@ -131,6 +142,9 @@ static void draw_batch(struct workspace *workspace, const struct stack *stack, s
         return;
     gl->NamedBufferSubData(stack->trees_buffer, 0, (GLsizeiptr)(fill.parts * sizeof *stack->trees),
                            stack->trees);
+    if (stack->bends)
+        gl->NamedBufferSubData(stack->bends_buffer, 0,
+                               (GLsizeiptr)(fill.parts * sizeof *stack->bends), stack->bends);
     gl->NamedBufferSubData(stack->quads_buffer, 0, (GLsizeiptr)(fill.quads * sizeof *stack->quads),
                            stack->quads);
     for (size_t first = 0, end; first < fill.quads; first = end) {
@@ -146,6 +160,9 @@ enum status stack_draw(struct workspace *workspace, struct stack *stack, const s
                        struct target *target)
 {
     struct gl *gl = workspace->gl;
+    enum status status = stack_relight(workspace, stack, view->sun_direction);
+    if (status != STATUS_OK)
+        return status;
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     backdrop_draw(workspace, stack->backdrop, view);
     gl->Flush(); /* a software GL fills the backdrop while the trees are culled and sorted */
@@ -166,7 +183,7 @@ enum status stack_draw(struct workspace *workspace, struct stack *stack, const s
     gl->DepthMask(GL_TRUE);
     gl->BindVertexArray(0);
     gl->UseProgram(0);
-    for (GLuint i = 0; i < 2; i++) {
+    for (GLuint i = 0; i < 3; i++) {
         gl->BindTextureUnit(i, 0);
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
     }

@@ -23,6 +23,12 @@ struct quad {
     uint low, high;  // left, bottom; right, top: half texels plus 1, 16 bits each
 };
 layout(std430, binding = 1) readonly buffer quads_buffer { quad quads[]; };
+#ifdef BENT
+struct bend {
+    vec4 corners[8];
+};
+layout(std430, binding = 2) readonly buffer bends_buffer { bend bends[]; };
+#endif
 uniform int first_quad;
 uniform vec2 layer_px;
 out vec3 place;  // texture coordinates, layer
@@ -36,6 +42,13 @@ void main()
                          corner >= 2 ? q.high >> 16 : q.low >> 16);
     vec2 at = (vec2(texels) - 1.0) * 0.5 / layer_px;
     vec3 world = t.base_layer.xyz + at.x * t.u_step.xyz + at.y * t.v_count.xyz + (q.slice + 0.5) * t.w_level.xyz;
+#ifdef BENT
+    float depth = (q.slice + 0.5) / t.v_count.w;
+    vec3 sides[4];
+    for (int k = 0; k < 4; k++)
+        sides[k] = mix(bends[q.tree].corners[k].xyz, bends[q.tree].corners[k + 4].xyz, depth);
+    world += mix(mix(sides[0], sides[1], at.x), mix(sides[2], sides[3], at.x), at.y);
+#endif
     place = vec3(at, t.base_layer.w + t.u_step.w * q.slice);
 #ifdef FOG
     away_m = world - eye_m;
@@ -113,7 +126,11 @@ void main()
     float thin = 1.0 - pow(1.0 - min(texel.a, 0.996), power_albedo.x);
     texel *= thin / max(min(texel.a, 0.996), 1e-6);
 #endif
+#ifdef LIT
+    color = vec4(texel.rgb * power_albedo.y, texel.a);
+#else
     color = vec4(texel.rgb * (light_of(fetch_normal(place)) * sun_radiance + ambient) * power_albedo.y, texel.a);
+#endif
 #ifdef FOG
     color.rgb = mix(fog_color * color.a, color.rgb, exp(-fog_density * length(away_m)));
 #endif

@@ -12,6 +12,11 @@
 #include "bake/cull.h"
 #include "bake/slices.h"
 
+/* How boxes stand on the terrain: upright, as trees do; with the four points of their base on it;
+ * with their tops as high above it along its normals (Meyer and Neyret 1998: boxes of 2 x 4 points
+ * on the patches of a surface). Slices are interpolated between the points. */
+enum stack_ground { GROUND_UPRIGHT, GROUND_BASE, GROUND_PATCH };
+
 struct stack_request {
     struct slices_request bake; /* width_px and height_px: 0, made from resolution_px */
     int resolution_px;          /* texels along a picture's longer side */
@@ -22,11 +27,15 @@ struct stack_request {
     bool trilinear;             /* else the nearest mip level, chosen a tree */
     bool rectangles;            /* quads hold only the occupied rectangle of a slice */
     bool each;                  /* one draw a tree */
-    bool rough;                 /* normals that scatter in a texel spread its light */
-    bool interpolate;           /* more slices than there are, between two each */
-    bool smooth;                /* no jump between numbers of slices and between stacks */
-    float criterion_px;         /* C2: parallax between two slices, px; 0: all slices */
-    float texel_px;             /* mip level: a texel is at most this many pixels and 0.7 of it */
+    int turns; /* light is baked into the colours for trees turned by so many steps; 0: light in
+                  every fragment */
+    enum stack_ground ground;
+    bool rough;             /* normals that scatter in a texel spread its light */
+    bool interpolate;       /* more slices than there are, between two each */
+    bool smooth;            /* no jump between numbers of slices and between stacks */
+    float criterion_px;     /* C2: parallax between two slices, px; 0: without it */
+    float criterion_texels; /* C1: gap between two slices along them, texels; 0: without it */
+    float texel_px;         /* mip level: a texel is at most this many pixels and 0.7 of it */
 };
 
 /* Every level halves the number of slices of the one before. */
@@ -62,11 +71,14 @@ struct stack {
     const struct scene *scene;
     struct stack_request request;
     size_t plants_count, arrays_count;
-    struct stack_plant *plants;
+    struct stack_plant *plants; /* species x turns (or 1) */
     struct stack_array *arrays;
     struct backdrop *backdrop;
     struct cull *cull;
     GLuint program, vertices, trees_buffer, quads_buffer;
+    GLuint bends_buffer;      /* 0: upright */
+    struct stack_bend *bends; /* of stack_bake.h, as trees */
+    float sun_direction[3];   /* that is baked in */
     struct stack_tree *trees; /* stack_bake.h: the parts of one batch */
     struct stack_quad *quads; /* theirs */
 };

@@ -44,16 +44,31 @@ static enum status size_of(struct workspace *workspace, struct arena *scratch, s
     return STATUS_OK;
 }
 
-/* All numbers of slices of one direction. */
+/* The slices whose colours are lit by one of their lights. */
+static const struct slices *lit_slices(struct arena *scratch, const struct slices *slices,
+                                       size_t light)
+{
+    struct slices *lit = ARENA_NEW(scratch, struct slices);
+    *lit = *slices;
+    lit->color = slices->lit + light * slices->texels_count;
+    lit->albedo_scale = slices->lit_scale;
+    return lit;
+}
+
+/* All numbers of slices of one direction. With two lights, of the front and from behind, they are
+ * baked in. */
 static enum status pyramid_create(struct workspace *workspace, struct arena *scratch,
                                   struct plant *plant, const struct slices_request *bake,
                                   struct pyramid *pyramid)
 {
-    enum status status = slices_create(scratch, plant, bake, workspace->threads,
-                                       &pyramid->slices[0][0], workspace->error);
+    const struct slices *slices;
+    enum status status =
+        slices_create(scratch, plant, bake, workspace->threads, &slices, workspace->error);
     if (status != STATUS_OK)
         return status;
-    pyramid->slices[0][1] = pyramid->slices[0][0];
+    for (size_t behind = 0; behind < 2; behind++)
+        pyramid->slices[0][behind] =
+            bake->lights_count > 0 ? lit_slices(scratch, slices, behind) : slices;
     pyramid->levels = 1;
     while (pyramid->levels < STACK_LEVELS && pyramid->slices[pyramid->levels - 1][0]->count > 1) {
         for (int behind = 0; behind < 2; behind++)
@@ -86,7 +101,8 @@ static void side_plan(struct arena *arena, struct stack *stack, const struct pyr
                       struct stack_side *side)
 {
     const struct slices *finest = pyramid->slices[0][0];
-    int layers = finest->count, at;
+    bool lit = stack->request.turns > 0; /* then front and back differ at every level */
+    int layers = lit ? 2 * finest->count : finest->count, at;
     for (int l = 1; l < pyramid->levels; l++)
         layers += 2 * pyramid->slices[l][0]->count;
     side->frame = finest->stacks[0];
@@ -104,7 +120,7 @@ static void side_plan(struct arena *arena, struct stack *stack, const struct pyr
         memcpy(level->slices, slices->slices, (size_t)slices->count * sizeof *slices->slices);
         for (int behind = 0; behind < 2; behind++) {
             level->layer[behind] = at;
-            at += l > 0 || behind ? slices->count : 0;
+            at += l > 0 || behind || lit ? slices->count : 0;
         }
     }
 }
@@ -140,8 +156,9 @@ static void slice_upload(struct workspace *workspace, const struct stack *stack,
         page_encode(&stack->request, page, width, height);
         gl->TextureSubImage3D(array->color, level, 0, 0, layer, width, height, 1, GL_RGBA,
                               GL_UNSIGNED_BYTE, page->color);
-        gl->TextureSubImage3D(array->normal, level, 0, 0, layer, width, height, 1, GL_RGBA,
-                              GL_UNSIGNED_BYTE, page->normal);
+        if (array->normal)
+            gl->TextureSubImage3D(array->normal, level, 0, 0, layer, width, height, 1, GL_RGBA,
+                                  GL_UNSIGNED_BYTE, page->normal);
         slices_halve(page->texels, width, height, page->half);
         float *swap = page->texels;
         page->texels = page->half;
@@ -162,21 +179,23 @@ static void side_upload(struct workspace *workspace, const struct stack *stack,
                         arena_alloc(scratch, texels, 4), arena_alloc(scratch, texels, 4),
                         arena_alloc(scratch, texels, 4)};
     for (int l = 0; l < pyramid->levels; l++)
-        for (int behind = 0; behind < (l ? 2 : 1); behind++)
+        for (int behind = 0; behind < (l || stack->request.turns > 0 ? 2 : 1); behind++)
             for (int k = 0; k < side->levels[l].count; k++)
                 slice_upload(workspace, stack, array, pyramid->slices[l][behind], k,
                              side->levels[l].layer[behind] + k, &page);
     arena_destroy(scratch);
 }
 
-static void array_create(struct gl *gl, bool trilinear, struct stack_array *array)
+static void array_create(struct gl *gl, const struct stack_request *request,
+                         struct stack_array *array)
 {
     GLuint *textures[2] = {&array->color, &array->normal};
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < (request->turns > 0 ? 1 : 2); i++) {
         *textures[i] = gl_texture(gl, GL_TEXTURE_2D_ARRAY, array->levels, GL_RGBA8, array->width_px,
                                   array->height_px, array->layers);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_MIN_FILTER,
-                              trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST);
+                              request->trilinear ? GL_LINEAR_MIPMAP_LINEAR
+                                                 : GL_LINEAR_MIPMAP_NEAREST);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_MAG_FILTER, GL_LINEAR);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -202,61 +221,129 @@ static struct cull_bound bound_of(const struct stack_plant *plant, size_t sides)
     return (struct cull_bound){0.5f * (low + high), hypotf(across, 0.5f * (high - low))};
 }
 
-static enum status plant_bake(struct workspace *workspace, struct arena *scratch,
-                              struct stack *stack, struct plant *plant, struct stack_plant *made,
-                              struct pyramid *pyramids)
+/* The sun as the plant has it whose rotation is a step of so many turns, seen from both sides. */
+static void turned_lights(const struct workspace *workspace, const struct stack *stack, int step,
+                          struct slices_light lights[2])
+{
+    const struct scene *scene = stack->scene;
+    double angle = 2 * M_PI * step / stack->request.turns;
+    float c = (float)cos(angle), s = (float)sin(angle);
+    const float *sun = stack->sun_direction;
+    for (int behind = 0; behind < 2; behind++) {
+        lights[behind] = (struct slices_light){
+            .sun_direction = {sun[0] * c - sun[2] * s, sun[1], sun[0] * s + sun[2] * c},
+            .two_sided = workspace->effects & EFFECT_TWO_SIDED,
+            .from_behind = behind};
+        memcpy(lights[behind].sun_radiance, scene->sun.radiance, sizeof scene->sun.radiance);
+        if (workspace->effects & EFFECT_AMBIENT)
+            memcpy(lights[behind].ambient, scene->ambient, sizeof scene->ambient);
+    }
+}
+
+/* The slices of one plant (species and step of rotation), a pyramid a direction. */
+static enum status plant_slices(struct workspace *workspace, struct arena *scratch,
+                                const struct stack *stack, size_t index, struct pyramid *pyramids,
+                                float *texel_m)
 {
     const struct slices_request *all = &stack->request.bake;
-    float longest_m = 0;
-    enum status status = STATUS_OK;
-    made->sides = ARENA_ARRAY(workspace->arena, struct stack_side, all->directions_count);
+    int turns = stack->request.turns;
+    struct plant *plant = stack->scene->species[turns ? index / (size_t)turns : index].plant;
+    struct slices_light lights[2];
     struct slices_request whole = *all;
-    status = size_of(workspace, scratch, plant, &stack->request, &longest_m, &whole);
+    float longest_m = 0;
+    if (turns)
+        turned_lights(workspace, stack, (int)(index % (size_t)turns), lights);
+    enum status status = size_of(workspace, scratch, plant, &stack->request, &longest_m, &whole);
     for (size_t d = 0; d < all->directions_count && status == STATUS_OK; d++) {
         struct slices_request one = *all;
         one.directions_count = 1;
         one.directions = all->directions + d;
+        one.lights_count = turns ? 2 : 0;
+        one.lights = lights;
         status = size_of(workspace, scratch, plant, &stack->request, &longest_m, &one);
         if (status == STATUS_OK)
             status = pyramid_create(workspace, scratch, plant, &one, &pyramids[d]);
-        if (status == STATUS_OK)
-            side_plan(workspace->arena, stack, &pyramids[d], &made->sides[d]);
     }
-    if (status != STATUS_OK)
-        return status;
-    made->texel_m = longest_m / (float)stack->request.resolution_px;
-    made->albedo_scale = pyramids[0].slices[0][0]->albedo_scale;
-    made->bound = bound_of(made, all->directions_count);
-    return STATUS_OK;
+    *texel_m = longest_m / (float)stack->request.resolution_px;
+    return status;
 }
 
-static bool has_trees(const struct scene *scene, size_t species)
+/* What the drawing must know of a plant. */
+static void plant_plan(struct arena *arena, struct stack *stack, const struct pyramid *pyramids,
+                       float texel_m, struct stack_plant *plant)
 {
-    for (size_t i = 0; i < scene->instances_count; i++)
-        if (scene->instances[i].species == species)
-            return true;
-    return false;
+    size_t sides = stack->request.bake.directions_count;
+    plant->sides = ARENA_ARRAY(arena, struct stack_side, sides);
+    for (size_t d = 0; d < sides; d++)
+        side_plan(arena, stack, &pyramids[d], &plant->sides[d]);
+    plant->texel_m = texel_m;
+    plant->albedo_scale = pyramids[0].slices[0][0]->albedo_scale;
+    plant->bound = bound_of(plant, sides);
+    if (stack->request.ground != GROUND_UPRIGHT)
+        plant->bound.radius_m *= 2;
+}
+
+static size_t plant_index(const struct stack *stack, const struct instance *instance)
+{
+    int turns = stack->request.turns;
+    if (turns == 0)
+        return instance->species;
+    double share = instance->rotation_rad / (2 * M_PI);
+    long step = lround((share - floor(share)) * turns) % turns;
+    return instance->species * (size_t)turns + (size_t)step;
+}
+
+const struct stack_plant *stack_plant_of(const struct stack *stack, const struct instance *instance)
+{
+    return &stack->plants[plant_index(stack, instance)];
+}
+
+/* Bakes what has trees; plans and makes the textures the first time. */
+static enum status bake_all(struct workspace *workspace, struct stack *stack, bool first)
+{
+    size_t sides = stack->request.bake.directions_count;
+    struct arena *scratch = arena_create(0);
+    struct pyramid *pyramids = ARENA_ARRAY(scratch, struct pyramid, stack->plants_count * sides);
+    bool *wanted = ARENA_ARRAY(scratch, bool, stack->plants_count);
+    enum status status = STATUS_OK;
+    for (size_t i = 0; i < stack->scene->instances_count; i++)
+        wanted[plant_index(stack, &stack->scene->instances[i])] = true;
+    for (size_t i = 0; i < stack->plants_count && status == STATUS_OK; i++) {
+        float texel_m;
+        if (!wanted[i])
+            continue;
+        status = plant_slices(workspace, scratch, stack, i, pyramids + i * sides, &texel_m);
+        if (status == STATUS_OK && first)
+            plant_plan(workspace->arena, stack, pyramids + i * sides, texel_m, &stack->plants[i]);
+    }
+    for (size_t i = 0; i < stack->arrays_count && status == STATUS_OK && first; i++)
+        array_create(workspace->gl, &stack->request, &stack->arrays[i]);
+    for (size_t i = 0; i < stack->plants_count * sides && status == STATUS_OK; i++)
+        if (wanted[i / sides])
+            side_upload(workspace, stack, &pyramids[i], &stack->plants[i / sides].sides[i % sides]);
+    arena_destroy(scratch);
+    return status == STATUS_OK ? gl_check(workspace->gl, "slices", workspace->error) : status;
 }
 
 enum status stack_bake(struct workspace *workspace, struct stack *stack)
 {
-    struct arena *scratch = arena_create(0);
-    const struct scene *scene = stack->scene;
-    size_t sides = stack->request.bake.directions_count;
-    enum status status = STATUS_OK;
-    stack->plants_count = scene->species_count;
-    stack->plants = ARENA_ARRAY(workspace->arena, struct stack_plant, scene->species_count);
-    stack->arrays = ARENA_ARRAY(workspace->arena, struct stack_array, scene->species_count * sides);
-    struct pyramid *pyramids = ARENA_ARRAY(scratch, struct pyramid, scene->species_count * sides);
-    for (size_t i = 0; i < scene->species_count && status == STATUS_OK; i++)
-        if (has_trees(scene, i))
-            status = plant_bake(workspace, scratch, stack, scene->species[i].plant,
-                                &stack->plants[i], pyramids + i * sides);
-    for (size_t i = 0; i < stack->arrays_count && status == STATUS_OK; i++)
-        array_create(workspace->gl, stack->request.trilinear, &stack->arrays[i]);
-    for (size_t i = 0; i < scene->species_count * sides && status == STATUS_OK; i++)
-        if (stack->plants[i / sides].sides)
-            side_upload(workspace, stack, &pyramids[i], &stack->plants[i / sides].sides[i % sides]);
-    arena_destroy(scratch);
-    return status == STATUS_OK ? gl_check(workspace->gl, "slices", workspace->error) : status;
+    struct view view;
+    size_t turns = stack->request.turns > 0 ? (size_t)stack->request.turns : 1;
+    stack->plants_count = stack->scene->species_count * turns;
+    stack->plants = ARENA_ARRAY(workspace->arena, struct stack_plant, stack->plants_count);
+    stack->arrays = ARENA_ARRAY(workspace->arena, struct stack_array,
+                                stack->plants_count * stack->request.bake.directions_count);
+    view_at(stack->scene, 0, &view);
+    memcpy(stack->sun_direction, view.sun_direction, sizeof stack->sun_direction);
+    return bake_all(workspace, stack, true);
+}
+
+enum status stack_relight(struct workspace *workspace, struct stack *stack,
+                          const float sun_direction[3])
+{
+    if (stack->request.turns == 0 ||
+        !memcmp(stack->sun_direction, sun_direction, sizeof stack->sun_direction))
+        return STATUS_OK;
+    memcpy(stack->sun_direction, sun_direction, sizeof stack->sun_direction);
+    return bake_all(workspace, stack, false);
 }

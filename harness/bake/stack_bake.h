@@ -6,6 +6,12 @@
 
 /* Fills stack->plants and stack->arrays: slices at every number of them, as textures. */
 enum status stack_bake(struct workspace *workspace, struct stack *stack);
+/* Bakes a moved sun into the colours anew; does nothing where it has not moved or is not baked. */
+enum status stack_relight(struct workspace *workspace, struct stack *stack,
+                          const float sun_direction[3]);
+/* The slices of a tree's species, of the nearest step of its rotation. */
+const struct stack_plant *stack_plant_of(const struct stack *stack,
+                                         const struct instance *instance);
 
 enum { STACK_BAND = 4 }; /* 1 / the part of an octave, or of a cosine, in which two change */
 
@@ -19,6 +25,12 @@ struct stack_tree {
     float power;            /* of each slice's transmittance */
     float bark_light[3], albedo_scale;
     uint32_t array, unused[3]; /* textures */
+};
+
+/* How far the corners of a part's box are moved, m; from slice 0's front to the last's back, each
+ * (0, 0), (1, 0), (0, 1), (1, 1) in texture coordinates. */
+struct stack_bend {
+    float corners_m[8][4];
 };
 
 struct stack_quad {
@@ -47,6 +59,10 @@ int stack_parts(const struct stack *stack, const struct view *view, enum lod lod
 void stack_tree_fill(const struct stack *stack, const struct view *view,
                      const struct instance *instance, const struct stack_part *part,
                      struct stack_tree *tree);
+
+/* How a part's box is bent to stand on the terrain. */
+void stack_bend_fill(const struct stack *stack, const struct instance *instance,
+                     const struct stack_tree *tree, struct stack_bend *bend);
 
 /* Quads of a run of count parts of one side, farthest first; part i is tree first_tree + i. Returns
  * how many: at most STACK_QUADS_MOST. */

@@ -70,19 +70,28 @@ static void best_sides(const struct stack *stack, const struct stack_plant *plan
     }
 }
 
-/* The least number of slices by criterion C2 (003, 4.3.2): the parallax of two neighbours is at
- * most the criterion in pixels. Of a near tree the ray that is turned farthest counts. */
-static float slices_wanted(float criterion_px, const struct seen *seen, float radius_m,
-                           float focal_px)
+/* The number of slices that must be surpassed (Meyer and Neyret 1998; 003, 4.3.2): by C1 the gap
+ * between two neighbours, along them, is at most so many texels; by C2 their parallax so many
+ * pixels. Of a near tree the ray that is turned farthest counts. */
+static float slices_wanted(const struct stack *stack, const struct stack_plant *plant,
+                           const struct seen *seen, float focal_px)
 {
     const struct slices_stack *frame = &seen->side->frame;
+    const struct stack_request *request = &stack->request;
+    float radius_m = plant->bound.radius_m, height_m = frame->high_m[2] - frame->low_m[2];
     float spread = fminf(1, radius_m / seen->distance_m);
     float sine = sqrtf(fmaxf(0, 1 - seen->cosine * seen->cosine));
     /* sin(a + b), as long as that is not past a right angle */
     float turned =
         seen->cosine > spread ? sine * sqrtf(1 - spread * spread) + seen->cosine * spread : 1;
-    return focal_px * (frame->high_m[2] - frame->low_m[2]) * turned /
-           (seen->distance_m * criterion_px);
+    float gap_m = request->criterion_texels * plant->texel_m, wanted = 0;
+    if (gap_m > 0)
+        wanted = height_m * turned / (gap_m * sqrtf(fmaxf(1e-6f, 1 - turned * turned)));
+    if (request->criterion_px > 0 || gap_m <= 0)
+        wanted = fmaxf(wanted, focal_px * height_m * turned /
+                                   (seen->distance_m *
+                                    (request->criterion_px > 0 ? request->criterion_px : 1)));
+    return wanted;
 }
 
 /* At low detail a plant has an eighth of its slices: 8 of 64 (Senegas 2001, 5.9). */
@@ -101,7 +110,8 @@ static int level_for(const struct stack *stack, const struct stack_side *side, e
         return low;
     if (lod == LOD_INTERMEDIATE)
         return wanted > (float)side->levels[low].count ? 0 : low;
-    if (lod == LOD_HIGH || !(stack->request.criterion_px > 0))
+    if (lod == LOD_HIGH ||
+        !(stack->request.criterion_px > 0 || stack->request.criterion_texels > 0))
         return 0;
     while (level + 1 < side->levels_count && (float)side->levels[level + 1].count > wanted)
         level++;
@@ -135,7 +145,7 @@ static int side_parts(const struct stack *stack, const struct seen *seen, enum l
 int stack_parts(const struct stack *stack, const struct view *view, enum lod lod,
                 const struct instance *instance, struct stack_part *parts)
 {
-    const struct stack_plant *plant = &stack->plants[instance->species];
+    const struct stack_plant *plant = stack_plant_of(stack, instance);
     float away[3], eye[3], forward[3], focal = cull_focal_px(view);
     for (int i = 0; i < 3; i++)
         away[i] = (view->eye_m[i] - instance->position_m[i]) / instance->scale;
@@ -148,8 +158,7 @@ int stack_parts(const struct stack *stack, const struct view *view, enum lod lod
         other = fmaxf(0, 0.5f - (best[0].cosine - best[1].cosine) * STACK_BAND);
     int count = 0;
     for (int k = other > 0 ? 1 : 0; k >= 0; k--) {
-        float criterion = stack->request.criterion_px > 0 ? stack->request.criterion_px : 1;
-        float wanted = slices_wanted(criterion, &best[k], plant->bound.radius_m, focal);
+        float wanted = slices_wanted(stack, plant, &best[k], focal);
         count += side_parts(stack, &best[k], lod, wanted, k ? other : 1 - other, parts + count);
     }
     return count;
@@ -195,7 +204,7 @@ void stack_tree_fill(const struct stack *stack, const struct view *view,
                      const struct instance *instance, const struct stack_part *part,
                      struct stack_tree *tree)
 {
-    const struct stack_plant *plant = &stack->plants[instance->species];
+    const struct stack_plant *plant = stack_plant_of(stack, instance);
     place_tree(instance, part, tree);
     light_tree(instance, part, view->sun_direction, tree);
     float texel_px = cull_focal_px(view) * plant->texel_m / part->distance_m;
