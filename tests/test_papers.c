@@ -320,6 +320,25 @@ static void test_papers__a_run_without_a_printed_cell_has_no_section(void **stat
     assert_int_equal(count, 0);
 }
 
+static void test_papers__a_variant_of_one_printed_row_has_no_table(void **state)
+{
+    struct arena *arena = *state;
+    struct world world = make_world(arena, ROUNDS);
+    struct run *run = make_run(arena, "x", ROUNDS);
+    const struct kind swept = {.scene = "poplar-forest",
+                               .method = "shaded-texels",
+                               .options = "slices=8",
+                               .trees = 1000,
+                               .lod = LOD_HIGH,
+                               .rate = 99,
+                               .wobble = 1};
+    add(arena, run, &swept, ROUNDS);
+    size_t count = 0;
+    world.beside = papers_beside(book_make(arena, run), &world.paper, 1, &count);
+    assert_int_equal(count, 1);
+    assert_int_equal(world.beside->blocks_count, 3);
+}
+
 static void test_papers__worst_and_best_are_the_slowest_and_fastest_frames(void **state)
 {
     struct arena *arena = *state;
@@ -467,6 +486,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(test_papers__what_no_cell_decides_is_not_measured),
         cmocka_unit_test(test_papers__one_and_two_rounds_leave_every_claim_open),
         cmocka_unit_test(test_papers__a_run_without_a_printed_cell_has_no_section),
+        cmocka_unit_test(test_papers__a_variant_of_one_printed_row_has_no_table),
         cmocka_unit_test(test_papers__worst_and_best_are_the_slowest_and_fastest_frames),
         cmocka_unit_test(test_papers__bad_files_are_refused_by_one_clear_line),
         cmocka_unit_test(test_papers__files_of_this_project_are_read_and_their_scenes_exist),

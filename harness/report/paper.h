@@ -104,7 +104,7 @@ struct paper_beside {
     struct paper_finding *findings;
 };
 
-/* The papers that the run holds a cell of, at least one of a printed table. */
+/* The papers of which the run has a variant with cells for two rows of a printed table. */
 struct paper_beside *papers_beside(const struct book *book, const struct paper *papers,
                                    size_t papers_count, size_t *count);
 /* A paper's claims, judged; in the order of the file. */

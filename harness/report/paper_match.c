@@ -142,7 +142,18 @@ static bool is_known(const struct paper_block *blocks, size_t count, const struc
     return false;
 }
 
-/* The variants of a table in the book's order: those with a cell that stands for a printed row. */
+/* Which of a table's rows a variant has; a row that failed counts. */
+static size_t rows_had(struct bench *bench, const struct paper_table *table,
+                       const struct row *variant)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < table->rows_count; k++)
+        count += find(bench, table, &table->rows[k], variant) != NULL;
+    return count;
+}
+
+/* The variants of a table in the book's order: those with cells for two printed rows at least,
+ * since a single one has no ratio. */
 static size_t find_blocks(struct bench *bench, const struct paper_table *table,
                           struct paper_block *blocks)
 {
@@ -152,7 +163,8 @@ static size_t find_blocks(struct bench *bench, const struct paper_table *table,
     for (size_t i = 0; i < book->rows_count; i++)
         for (size_t k = 0; k < table->rows_count; k++) {
             if (!paper_side_matches(&table->rows[k].cell, &samples[i]) ||
-                is_known(blocks, count, samples[i].row))
+                is_known(blocks, count, samples[i].row) ||
+                rows_had(bench, table, samples[i].row) < 2)
                 continue;
             struct paper_block *block = &blocks[count++];
             *block = (struct paper_block){.table = table, .example = samples[i].row};
