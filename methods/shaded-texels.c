@@ -5,14 +5,14 @@
 struct options {
     int path, add, slices, resolution, cut, filter, samples;
     float criterion, texel;
-    bool dilate, interpolate, rough, smooth;
+    bool dilate, interpolate, rough, facing, smooth;
 };
 
 /* clang-format off */
 static const struct option table[] = {
     OPTION_WORD(struct options, path, 1, "naive|fast",
                 "naive: as published, every slice a whole trilinear quad, a draw a tree"),
-    OPTION_WORD(struct options, add, 0, "nothing|batches|rectangles|bilinear|even|criterion|rough",
+    OPTION_WORD(struct options, add, 0, "nothing|batches|rectangles|bilinear|even|criterion|rough|facing",
                 "to naive, one of what makes fast fast: to see what each gives"),
     OPTION(struct options, slices, 64, 1, 512, "", "slices along each of the three directions"),
     OPTION(struct options, resolution, 128, 8, 512, "px", "texels along a picture's longer side"),
@@ -25,6 +25,8 @@ static const struct option table[] = {
     OPTION(struct options, criterion, 2, 0, 64, "px",
            "parallax between neighbouring slices at lod=auto; 0: all slices"),
     OPTION(struct options, rough, 1, 0, 1, "", "normals that scatter within a texel spread its light"),
+    OPTION(struct options, facing, 1, 0, 1, "",
+           "leaves show the area that they turn to the eye, not to the front of the slices"),
     OPTION(struct options, dilate, 1, 0, 1, "",
            "empty texels get their neighbours' normals, and on path=naive their colours"),
     OPTION(struct options, interpolate, 0, 0, 1, "",
@@ -36,7 +38,16 @@ static const struct option table[] = {
 /* clang-format on */
 
 enum { PATH_NAIVE, PATH_FAST };
-enum { ADD_NOTHING, ADD_BATCHES, ADD_RECTANGLES, ADD_BILINEAR, ADD_EVEN, ADD_CRITERION, ADD_ROUGH };
+enum {
+    ADD_NOTHING,
+    ADD_BATCHES,
+    ADD_RECTANGLES,
+    ADD_BILINEAR,
+    ADD_EVEN,
+    ADD_CRITERION,
+    ADD_ROUGH,
+    ADD_FACING
+};
 
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
                            const void *values, void **state)
@@ -58,6 +69,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .rectangles = fast || options->add == ADD_RECTANGLES,
         .each = !fast && options->add != ADD_BATCHES,
         .rough = fast ? options->rough : options->add == ADD_ROUGH,
+        .facing = fast ? options->facing : options->add == ADD_FACING,
         .interpolate = options->interpolate,
         .smooth = options->smooth,
         .criterion_px = fast || options->add == ADD_CRITERION ? options->criterion : 0,

@@ -6,13 +6,16 @@ struct tree {
     vec4 base_layer;   // struct stack_tree of stack_bake.h
     vec4 u_step, v_count, w_level;
     vec4 leaf_power, bark_albedo;
-    uvec4 array;
+    vec4 eye, toward_array;
 };
 layout(std430, binding = 0) readonly buffer trees_buffer { tree trees[]; };
 
 flat out float level;
 flat out vec3 leaf_light, bark_light;
 flat out vec2 power_albedo;
+#ifdef FACING
+flat out vec3 to_eye, toward;
+#endif
 #ifdef FOG
 out vec3 away_m;
 #endif
@@ -58,6 +61,10 @@ void main()
     leaf_light = t.leaf_power.xyz;
     bark_light = t.bark_albedo.xyz;
     power_albedo = vec2(t.leaf_power.w, t.bark_albedo.w);
+#ifdef FACING
+    to_eye = t.eye.xyz;
+    toward = t.toward_array.xyz;
+#endif
 }
 
 #pragma stage fragment
@@ -66,6 +73,9 @@ layout(binding = 1) uniform sampler2DArray normal_map;  // 128 is 0; share of le
 flat in float level;
 flat in vec3 leaf_light, bark_light;
 flat in vec2 power_albedo;
+#ifdef FACING
+flat in vec3 to_eye, toward;
+#endif
 #ifdef FOG
 in vec3 away_m;
 #endif
@@ -118,9 +128,28 @@ float light_of(vec4 n)
     return mix(0.5 * (along + size), size, two_sided ? n.w : 0.0);
 }
 
+#ifdef FACING
+// How much of its area a leaf turns to the eye, against what it turns to the front of the slices and they to the eye.
+// Of normals that scatter, the root mean square.
+float facing_of(vec4 n)
+{
+    float scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0) / 4.5 + 0.01;
+    float to_front = dot(n.xyz, toward), turned = dot(n.xyz, to_eye);
+    float area = sqrt((turned * turned + scatter * dot(to_eye, to_eye)) / (to_front * to_front + scatter));
+    return mix(1.0, min(area, 3.0), n.w);
+}
+#endif
+
 void main()
 {
     vec4 texel = fetch_color(place);
+#ifndef LIT
+    vec4 normal = fetch_normal(place);
+#endif
+#ifdef FACING
+    float area = facing_of(normal);
+    texel *= min(area, 1.0 / max(texel.a, 1e-6));
+#endif
 #ifdef POWER
     // the last 1/256 of transmittance is kept, so that what is opaque can fade, too
     float thin = 1.0 - pow(1.0 - min(texel.a, 0.996), power_albedo.x);
@@ -129,7 +158,7 @@ void main()
 #ifdef LIT
     color = vec4(texel.rgb * power_albedo.y, texel.a);
 #else
-    color = vec4(texel.rgb * (light_of(fetch_normal(place)) * sun_radiance + ambient) * power_albedo.y, texel.a);
+    color = vec4(texel.rgb * (light_of(normal) * sun_radiance + ambient) * power_albedo.y, texel.a);
 #endif
 #ifdef FOG
     color.rgb = mix(fog_color * color.a, color.rgb, exp(-fog_density * length(away_m)));

@@ -31,11 +31,12 @@ struct stack_request {
                   every fragment */
     enum stack_ground ground;
     bool rough;             /* normals that scatter in a texel spread its light */
+    bool facing;            /* leaves show the area that they turn to the eye */
     bool interpolate;       /* more slices than there are, between two each */
     bool smooth;            /* no jump between numbers of slices and between stacks */
     float criterion_px;     /* C2: parallax between two slices, px; 0: without it */
     float criterion_texels; /* C1: gap between two slices along them, texels; 0: without it */
-    float texel_px;         /* mip level: a texel is at most this many pixels and 0.7 of it */
+    float texel_px;         /* mip level: texels are about this large on the picture */
 };
 
 /* Every level halves the number of slices of the one before. */

@@ -194,8 +194,8 @@ static void array_create(struct gl *gl, const struct stack_request *request,
         *textures[i] = gl_texture(gl, GL_TEXTURE_2D_ARRAY, array->levels, GL_RGBA8, array->width_px,
                                   array->height_px, array->layers);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_MIN_FILTER,
-                              request->trilinear ? GL_LINEAR_MIPMAP_LINEAR
-                                                 : GL_LINEAR_MIPMAP_NEAREST);
+                              request->trilinear || request->smooth ? GL_LINEAR_MIPMAP_LINEAR
+                                                                    : GL_LINEAR_MIPMAP_NEAREST);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_MAG_FILTER, GL_LINEAR);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);

@@ -24,7 +24,9 @@ struct stack_tree {
     float leaf_light[3];    /* plant's space: toward the sun */
     float power;            /* of each slice's transmittance */
     float bark_light[3], albedo_scale;
-    uint32_t array, unused[3]; /* textures */
+    float eye[3], unused; /* plant's space: toward the eye, 1 long along toward */
+    float toward[3];
+    uint32_t array; /* textures */
 };
 
 /* How far the corners of a part's box are moved, m; from slice 0's front to the last's back, each
@@ -47,10 +49,10 @@ struct stack_part {
     float share;      /* of the tree's optical depth */
     float drawn;      /* slices; more than the level's are interpolated */
     float distance_m; /* of the eye, plant's scale */
+    float to_eye[3];  /* plant's space: unit, from the box's middle */
 };
 
-/* The parts of a tree, at most PARTS_MOST; those of a side follow each other, the more facing side
- * comes last. */
+/* The parts of a tree, at most PARTS_MOST; those of a side follow each other. */
 enum { PARTS_MOST = 4 };
 int stack_parts(const struct stack *stack, const struct view *view, enum lod lod,
                 const struct instance *instance, struct stack_part *parts);

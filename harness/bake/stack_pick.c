@@ -33,6 +33,7 @@ struct seen {
     bool behind;
     float cosine;     /* between toward and the way to the eye, >= 0 */
     float distance_m; /* to the box's middle, plant's scale */
+    float to_eye[3];  /* plant's axes, unit */
 };
 
 /* eye and forward: plant's axes. Within a crown it counts more where the eye looks than where it
@@ -50,7 +51,11 @@ static struct seen see(const struct stack_side *side, const float eye[3], const 
     for (int axis = 0; axis < 3; axis++)
         along[axis] -= within * dot(forward, axes[axis]);
     float length = fmaxf(sqrtf(dot(along, along)), 1e-12f);
-    return (struct seen){side, along[2] < 0, fabsf(along[2]) / length, distance};
+    struct seen seen = {side, along[2] < 0, fabsf(along[2]) / length, distance, {0}};
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < 3; axis++)
+            seen.to_eye[i] += along[axis] * axes[axis][i] / length;
+    return seen;
 }
 
 /* The sides that face the eye (plant's axes and scale) most and second most, as Meyer and Neyret
@@ -133,12 +138,20 @@ static int side_parts(const struct stack *stack, const struct seen *seen, enum l
     drawn = (float)levels->count;
     if (stack->request.interpolate && lod != LOD_LOW && level == 0 && wanted > drawn)
         drawn = ceilf(fminf(wanted, STACK_DENSER * drawn));
-    parts[count++] = (struct stack_part){seen->side,         levels, seen->behind,
-                                         share * (1 - next), drawn,  seen->distance_m};
-    if (next > 0)
-        parts[count++] = (struct stack_part){
-            seen->side,      levels + 1, seen->behind, share * next, (float)levels[1].count,
-            seen->distance_m};
+    struct stack_part part = {.side = seen->side,
+                              .level = levels,
+                              .behind = seen->behind,
+                              .share = share * (1 - next),
+                              .drawn = drawn,
+                              .distance_m = seen->distance_m};
+    memcpy(part.to_eye, seen->to_eye, sizeof part.to_eye);
+    parts[count++] = part;
+    if (next > 0) {
+        part.level = levels + 1;
+        part.share = share * next;
+        part.drawn = (float)part.level->count;
+        parts[count++] = part;
+    }
     return count;
 }
 
@@ -156,8 +169,11 @@ int stack_parts(const struct stack *stack, const struct view *view, enum lod lod
     float other = 0;
     if (stack->request.smooth && best[1].cosine >= 0)
         other = fmaxf(0, 0.5f - (best[0].cosine - best[1].cosine) * STACK_BAND);
-    int count = 0;
-    for (int k = other > 0 ? 1 : 0; k >= 0; k--) {
+    /* Two sides are drawn in the order of the request, so that the turn of the better one is no
+     * turn of the picture. */
+    int count = 0, sides = other > 0 ? 2 : 1, first = sides > 1 && best[1].side < best[0].side;
+    for (int i = 0; i < sides; i++) {
+        int k = first ^ i;
         float wanted = slices_wanted(stack, plant, &best[k], focal);
         count += side_parts(stack, &best[k], lod, wanted, k ? other : 1 - other, parts + count);
     }
@@ -208,24 +224,31 @@ void stack_tree_fill(const struct stack *stack, const struct view *view,
     place_tree(instance, part, tree);
     light_tree(instance, part, view->sun_direction, tree);
     float texel_px = cull_focal_px(view) * plant->texel_m / part->distance_m;
-    float mip = floorf(log2f(fmaxf(stack->request.texel_px / texel_px, 1)) + 0.5f);
+    float mip = log2f(fmaxf(stack->request.texel_px / texel_px, 1));
+    mip = stack->request.smooth ? mip : floorf(mip + 0.5f);
     tree->level = fminf(mip, (float)(stack->arrays[part->side->array].levels - 1));
     tree->power = part->share * (float)part->level->count / part->drawn;
     tree->albedo_scale = plant->albedo_scale;
+    float facing = fmaxf(fabsf(dot(part->to_eye, part->side->frame.toward)), 1e-3f);
+    for (int i = 0; i < 3; i++) {
+        tree->eye[i] = part->to_eye[i] / facing;
+        tree->toward[i] = part->side->frame.toward[i];
+    }
     tree->array = (uint32_t)part->side->array;
 }
 
 /* Half texels plus 1 of a slice's rectangle with half a texel of the mip level around it, within
- * the picture; false where nothing is covered. */
+ * the picture; false where nothing is covered. A trilinear filter's level may be two above. */
 static bool quad_rect(const struct stack *stack, const struct slice *slice,
                       const struct stack_array *array, int level, uint16_t rect[4])
 {
     const int most[2] = {2 * array->width_px, 2 * array->height_px};
     if (stack->request.rectangles && slice->width == 0)
         return false;
-    const int low[2] = {2 * slice->left - (1 << level), 2 * slice->bottom - (1 << level)};
-    const int high[2] = {2 * (slice->left + slice->width) + (1 << level),
-                         2 * (slice->bottom + slice->height) + (1 << level)};
+    const int border = 1 << (level + (stack->request.trilinear ? 2 : 0));
+    const int low[2] = {2 * slice->left - border, 2 * slice->bottom - border};
+    const int high[2] = {2 * (slice->left + slice->width) + border,
+                         2 * (slice->bottom + slice->height) + border};
     for (int i = 0; i < 2; i++) {
         bool whole = !stack->request.rectangles;
         rect[i] = (uint16_t)(whole || low[i] < 0 ? 1 : low[i] + 1);
@@ -248,7 +271,7 @@ static bool quad_fill(const struct stack *stack, const struct stack_part *part,
     for (int k = 0; k < 2; k++) {
         uint16_t rect[4];
         int slice = part->behind ? both[k] : last - both[k];
-        if (!quad_rect(stack, &part->level->slices[slice], array, (int)tree->level, rect))
+        if (!quad_rect(stack, &part->level->slices[slice], array, (int)ceilf(tree->level), rect))
             continue;
         for (int i = 0; i < 2; i++) {
             quad->rect[i] = covered && quad->rect[i] < rect[i] ? quad->rect[i] : rect[i];
