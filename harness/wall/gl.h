@@ -51,6 +51,10 @@ GLuint gl_texture(struct gl *gl, GLenum target, int levels, GLenum internal_form
                   int height_px, int layers);
 GLuint gl_texture_multisample(struct gl *gl, int samples, GLenum internal_format, int width_px,
                               int height_px);
+/* A buffer seen as a row of texels; STATUS_UNSUPPORTED where it has more than the driver fetches.
+ */
+enum status gl_texture_buffer(struct gl *gl, GLenum internal_format, size_t texel_bytes,
+                              GLuint buffer, GLuint *texture, struct error *error);
 GLuint gl_framebuffer(struct gl *gl);
 GLuint gl_vertex_array(struct gl *gl);
 void gl_delete_buffer(struct gl *gl, GLuint buffer);

@@ -118,8 +118,10 @@ static size_t texture_bytes(struct gl *gl, GLuint texture)
     GLint target = 0, levels = 0, samples = 0;
     size_t bytes = 0;
     gl->GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-    if (target == GL_TEXTURE_BUFFER) /* counted as a buffer */
+    if (target == 0) { /* no question for a buffer texture; its buffer is counted */
+        gl->GetError();
         return 0;
+    }
     gl->GetTextureParameteriv(texture, GL_TEXTURE_IMMUTABLE_LEVELS, &levels);
     for (int level = 0; level < (levels ? levels : LEVELS_MAX); level++)
         bytes += level_bytes(gl, texture, level) * (target == GL_TEXTURE_CUBE_MAP ? 6 : 1);
@@ -196,6 +198,23 @@ GLuint gl_texture_multisample(struct gl *gl, int samples, GLenum internal_format
     GLint given = samples;
     gl->GetTextureLevelParameteriv(name, 0, GL_TEXTURE_SAMPLES, &given);
     return gl_books_add(gl, GL_KIND_TEXTURE, name, level_bytes(gl, name, 0) * (size_t)given);
+}
+
+enum status gl_texture_buffer(struct gl *gl, GLenum internal_format, size_t texel_bytes,
+                              GLuint buffer, GLuint *texture, struct error *error)
+{
+    GLint64 bytes = 0;
+    GLint most = 0;
+    gl->GetNamedBufferParameteri64v(buffer, GL_BUFFER_SIZE, &bytes);
+    gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+    if ((size_t)bytes / texel_bytes > (size_t)most)
+        return error_set(error, STATUS_UNSUPPORTED,
+                         "buffer texture: %zu texels are more than this driver's %d",
+                         (size_t)bytes / texel_bytes, most);
+    gl->CreateTextures(GL_TEXTURE_BUFFER, 1, texture);
+    gl->TextureBuffer(*texture, internal_format, buffer);
+    gl_books_add(gl, GL_KIND_TEXTURE, *texture, 0);
+    return STATUS_OK;
 }
 
 GLuint gl_framebuffer(struct gl *gl)

@@ -1,0 +1,469 @@
+/* ray-texels-gl: rays marched through voxels of the plants by OpenGL. One triangle covers the
+ * picture; each fragment's ray meets the trees of its tile, front to back, until nothing more is
+ * seen: hidden trees cost nothing, and the target is blended once. */
+#include "bake/backdrop.h"
+#include "bake/cull.h"
+#include "bake/tiles.h"
+#include "bake/voxels.h"
+#include "method/method.h"
+
+#include "ray-texels-gl.glsl.h"
+
+#include <string.h>
+
+struct options {
+    int resolution, model;
+    float stop, step, bias;
+};
+
+/* clang-format off */
+static const struct option table[] = {
+    OPTION(struct options, resolution, 128, 1, 256, "", "voxels along a plant's longest extent"),
+    OPTION_WORD(struct options, model, 0, "sggx|isotropic",
+                "how leaves hide and are lit: by the second moments of their normals, or alike on all sides"),
+    OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
+    OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
+    OPTION(struct options, bias, 0.5, -4, 4, "", "added to the level of detail that a pixel asks for"),
+    OPTION_END,
+};
+/* clang-format on */
+
+enum { CELLS, VOXELS, TREES, FIRSTS, ENTRIES, BUFFERS, DEPTH = BUFFERS, TEXTURES };
+
+/* A tree as the shader reads it: three texels. */
+struct texels {
+    uint16_t low[2], high[2]; /* pixels, both ends included, row 0 on top */
+    uint32_t first_cell;
+    uint32_t size;   /* three times 10 bits; bit 30: smaller than a pixel */
+    float where[3];  /* the eye in voxels from the box's corner; of a small tree: its middle on
+                        the screen, from pixel centres, px; its area, px^2 */
+    float per_m;     /* voxels a metre; of a small tree: its depth along the view, m */
+    float turn[2];   /* cosine, sine */
+    float clear;     /* what fog leaves */
+    uint32_t albedo; /* three times 10 bits */
+};
+
+struct tree {
+    float position_m[3], cosine, sine, scale;
+    uint32_t species;
+};
+
+struct state {
+    const struct scene *scene;
+    struct options options;
+    struct backdrop *backdrop;
+    const struct voxels **volumes;              /* one a species */
+    uint32_t (*first_cells)[VOXELS_LEVELS_MAX]; /* one a species: in the buffer of cells */
+    struct cull *cull;
+    struct tiles *tiles;
+    struct tiles_rect *rects; /* of the trees in view, in their order */
+    struct texels *texels;
+    struct tree *trees; /* one an instance */
+    GLuint program, vertices, framebuffer;
+    GLuint buffers[BUFFERS], textures[BUFFERS];
+};
+
+/* Voxels of all species in one row; cells name them. */
+static void upload_volumes(struct workspace *workspace, struct state *state)
+{
+    const size_t species_count = state->scene->species_count;
+    struct arena *scratch = arena_create(0);
+    size_t cells_count = 0, voxels_count = 0;
+    for (size_t i = 0; i < species_count; i++) {
+        const struct voxels *volume = state->volumes[i];
+        voxels_count += volume->voxels_count;
+        for (uint32_t k = 0; k < volume->levels_count; k++) {
+            const uint32_t *size = volume->levels[k].size;
+            state->first_cells[i][k] = (uint32_t)cells_count;
+            cells_count += (size_t)size[0] * size[1] * size[2];
+        }
+    }
+    uint32_t *cells = ARENA_ARRAY(scratch, uint32_t, cells_count);
+    struct voxel *voxels = ARENA_ARRAY(scratch, struct voxel, voxels_count);
+    uint32_t *cell = cells, first = 0;
+    for (size_t i = 0; i < species_count; i++) {
+        const struct voxels *volume = state->volumes[i];
+        memcpy(voxels + first, volume->voxels, volume->voxels_count * sizeof *voxels);
+        for (uint32_t k = 0; k < volume->levels_count; k++) {
+            const struct voxels_level *level = &volume->levels[k];
+            size_t count = (size_t)level->size[0] * level->size[1] * level->size[2];
+            for (size_t at = 0; at < count; at++)
+                *cell++ = level->cells[at] + (level->cells[at] < VOXELS_FIRST ? 0 : first);
+        }
+        first += volume->voxels_count;
+    }
+    state->buffers[CELLS] =
+        gl_buffer(workspace->gl, (GLsizeiptr)(cells_count * sizeof *cells), cells, 0);
+    state->buffers[VOXELS] =
+        gl_buffer(workspace->gl, (GLsizeiptr)(voxels_count * sizeof *voxels), voxels, 0);
+    arena_destroy(scratch);
+}
+
+static enum status prepare_buffers(struct workspace *workspace, struct state *state)
+{
+    static const struct {
+        GLenum format;
+        size_t texel_bytes;
+    } formats[BUFFERS] = {[CELLS] = {GL_R32UI, 4},
+                          [VOXELS] = {GL_RGBA32UI, 16},
+                          [TREES] = {GL_RGBA32UI, 16},
+                          [FIRSTS] = {GL_R32UI, 4},
+                          [ENTRIES] = {GL_R32UI, 4}};
+    const size_t sizes[BUFFERS] = {
+        [TREES] = state->scene->instances_count * sizeof(struct texels),
+        [FIRSTS] = (TILES_MAX + 1) * sizeof(uint32_t),
+        [ENTRIES] = state->tiles->capacity * sizeof(uint32_t),
+    };
+    struct gl *gl = workspace->gl;
+    upload_volumes(workspace, state);
+    enum status status = STATUS_OK;
+    for (int i = 0; i < BUFFERS && !status; i++) {
+        if (sizes[i] || !state->buffers[i])
+            state->buffers[i] = gl_buffer(gl, (GLsizeiptr)sizes[i], NULL, GL_DYNAMIC_STORAGE_BIT);
+        status = gl_texture_buffer(gl, formats[i].format, formats[i].texel_bytes, state->buffers[i],
+                                   &state->textures[i], workspace->error);
+    }
+    return status;
+}
+
+static enum status prepare_volumes(struct workspace *workspace, struct state *state)
+{
+    const struct scene *scene = state->scene;
+    /* the level of detail is the volumes' resolution */
+    int divisor = workspace->lod == LOD_LOW ? 4 : workspace->lod == LOD_INTERMEDIATE ? 2 : 1;
+    int resolution = (state->options.resolution + divisor - 1) / divisor;
+    struct cull_bound *bounds =
+        ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count);
+    state->volumes = ARENA_ARRAY(workspace->arena, const struct voxels *, scene->species_count);
+    state->first_cells =
+        arena_alloc(workspace->arena, scene->species_count, sizeof *state->first_cells);
+    for (size_t i = 0; i < scene->species_count; i++) {
+        const struct mesh *mesh;
+        enum status status = voxels_of_plant(workspace->arena, scene->species[i].plant, resolution,
+                                             &state->volumes[i], workspace->error);
+        if (!status)
+            status = plant_mesh(scene->species[i].plant, &mesh, workspace->error);
+        if (status)
+            return status;
+        bounds[i] = cull_bound_of(mesh);
+    }
+    state->cull = cull_create(workspace->arena, scene, bounds);
+    return STATUS_OK;
+}
+
+static enum status prepare(struct workspace *workspace, const struct scene *scene,
+                           const void *values, void **result)
+{
+    struct gl *gl = workspace->gl;
+    struct state *state = *result = ARENA_NEW(workspace->arena, struct state);
+    const size_t count = scene->instances_count;
+    state->scene = scene;
+    state->options = *(const struct options *)values;
+    state->tiles = tiles_create(workspace->arena, count);
+    state->rects = ARENA_ARRAY(workspace->arena, struct tiles_rect, count);
+    state->texels = ARENA_ARRAY(workspace->arena, struct texels, count);
+    state->trees = ARENA_ARRAY(workspace->arena, struct tree, count);
+    for (size_t i = 0; i < count; i++) {
+        const struct instance *from = &scene->instances[i];
+        state->trees[i] = (struct tree){
+            .position_m = {from->position_m[0], from->position_m[1], from->position_m[2]},
+            .cosine = cosf(from->rotation_rad),
+            .sine = sinf(from->rotation_rad),
+            .scale = from->scale,
+            .species = from->species,
+        };
+    }
+    state->vertices = gl_vertex_array(gl);
+    state->framebuffer = gl_framebuffer(gl);
+    const char *defines = state->options.model ? "FIRST 256u\nISOTROPIC 1\n" : "FIRST 256u\n";
+    enum status status = backdrop_prepare(workspace, scene, &state->backdrop);
+    if (!status)
+        status = prepare_volumes(workspace, state);
+    if (!status)
+        status = prepare_buffers(workspace, state);
+    if (!status)
+        status = gl_program(gl, "ray-texels-gl", ray_texels_gl_glsl, defines, &state->program,
+                            workspace->error);
+    return status ? status : gl_check(gl, "ray-texels-gl", workspace->error);
+}
+
+static float dot3(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* A picture's constants. */
+struct picture {
+    const struct view *view;
+    float focal_px, fog_density, bias;
+};
+
+/* The level whose voxels are about as large as pixels. */
+static uint32_t level_of(const struct picture *picture, const struct tree *tree,
+                         const struct voxels *volume, float depth_m)
+{
+    float pixel_m = fmaxf(depth_m, picture->view->near_m) / picture->focal_px;
+    float ratio = pixel_m / (tree->scale * volume->levels[0].voxel_m);
+    float level = floorf(log2f(ratio) + picture->bias);
+    return (uint32_t)fminf(fmaxf(level, 0), (float)(volume->levels_count - 1));
+}
+
+/* The middle of a level's box from the eye, and its half extents' vectors. */
+struct box {
+    float middle_m[3], half_m[3][3];
+};
+
+static struct box box_of(const struct picture *picture, const struct tree *tree,
+                         const struct voxels *volume, const struct voxels_level *grid)
+{
+    const float c = tree->cosine, s = tree->sine;
+    const float axes[3][3] = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
+    struct box box;
+    for (int i = 0; i < 3; i++)
+        box.middle_m[i] = tree->position_m[i] - picture->view->eye_m[i];
+    for (int k = 0; k < 3; k++) {
+        float half = 0.5f * (float)grid->size[k] * grid->voxel_m;
+        float place = tree->scale * (volume->origin_m[k] + half);
+        for (int i = 0; i < 3; i++) {
+            box.middle_m[i] += place * axes[k][i];
+            box.half_m[k][i] = tree->scale * half * axes[k][i];
+        }
+    }
+    return box;
+}
+
+/* Its outline on the screen, within low and high (px, from the first pixel's centre, y down); the
+ * whole picture where it reaches behind the eye's near plane. False when nothing is before that. */
+struct outline {
+    float low[2], high[2], middle[2];
+    bool before; /* all of it is before the near plane */
+};
+
+static bool outline_of(const struct picture *picture, const struct box *box,
+                       struct outline *outline)
+{
+    const struct view *view = picture->view;
+    const int size_px[2] = {view->width_px, view->height_px};
+    const float down[3] = {-view->up[0], -view->up[1], -view->up[2]};
+    const float *axes[2] = {view->right, down};
+    float middle = dot3(box->middle_m, view->forward), reach = 0;
+    for (int k = 0; k < 3; k++)
+        reach += fabsf(dot3(box->half_m[k], view->forward));
+    outline->before = middle - reach > view->near_m;
+    for (int i = 0; i < 2; i++) {
+        outline->low[i] = 0;
+        outline->high[i] = (float)size_px[i];
+        if (!outline->before)
+            continue;
+        float slope = dot3(box->middle_m, axes[i]) / middle, spread = 0;
+        for (int k = 0; k < 3; k++)
+            spread +=
+                fabsf(dot3(box->half_m[k], axes[i]) - slope * dot3(box->half_m[k], view->forward));
+        spread *= picture->focal_px / (middle - reach);
+        outline->middle[i] = 0.5f * (float)(size_px[i] - 1) + picture->focal_px * slope;
+        outline->low[i] = outline->middle[i] - spread;
+        outline->high[i] = outline->middle[i] + spread;
+    }
+    return middle + reach > view->near_m;
+}
+
+static int16_t pixel_of(float at_px, int size_px)
+{
+    return (int16_t)(at_px > 0 ? at_px < (float)size_px ? at_px : (float)size_px : 0);
+}
+
+/* The pixels from first to last that are in the picture. */
+static void rect_between(struct tiles_rect *rect, int axis, float first, float last, int size_px)
+{
+    bool any = first < (float)size_px && last >= 0;
+    rect->low[axis] = any ? pixel_of(first, size_px) : 0;
+    rect->high[axis] = any ? pixel_of(last, size_px - 1) : -1;
+}
+
+/* A tree about as small as a pixel covers its share of the four pixels around its middle. */
+static void place_small(const struct picture *picture, const struct outline *outline,
+                        const struct box *box, float side_m, struct tiles_rect *rect,
+                        struct texels *texels)
+{
+    const int size_px[2] = {picture->view->width_px, picture->view->height_px};
+    float depth = dot3(box->middle_m, picture->view->forward);
+    float side_px = picture->focal_px * side_m / depth;
+    for (int i = 0; i < 2; i++) {
+        float first = floorf(outline->middle[i]);
+        rect_between(rect, i, first, first + 1, size_px[i]);
+        texels->where[i] = outline->middle[i];
+    }
+    texels->where[2] = side_px * side_px;
+    texels->per_m = depth;
+}
+
+/* The eye in voxels from the box's corner. */
+static void place_box(const struct picture *picture, const struct tree *tree,
+                      const struct voxels *volume, float voxel_m, struct texels *texels)
+{
+    const float per_m = texels->per_m = 1 / (tree->scale * voxel_m);
+    float eye[3];
+    for (int i = 0; i < 3; i++)
+        eye[i] = picture->view->eye_m[i] - tree->position_m[i];
+    texels->where[0] = per_m * (eye[0] * tree->cosine - eye[2] * tree->sine);
+    texels->where[1] = per_m * eye[1];
+    texels->where[2] = per_m * (eye[0] * tree->sine + eye[2] * tree->cosine);
+    for (int i = 0; i < 3; i++)
+        texels->where[i] -= volume->origin_m[i] / voxel_m;
+}
+
+static uint32_t pack_10(const uint32_t values[3])
+{
+    return values[0] | values[1] << 10 | values[2] << 20;
+}
+
+static void see(const struct state *state, const struct picture *picture, uint32_t number,
+                float depth_m, struct tiles_rect *rect, struct texels *texels)
+{
+    static const float small_px = 0.75f;
+    const int size_px[2] = {picture->view->width_px, picture->view->height_px};
+    const struct tree *tree = &state->trees[number];
+    const struct voxels *volume = state->volumes[tree->species];
+    uint32_t level = level_of(picture, tree, volume, depth_m);
+    const struct voxels_level *grid = &volume->levels[level];
+    struct box box = box_of(picture, tree, volume, &volume->levels[0]);
+    struct outline outline;
+    bool seen = outline_of(picture, &box, &outline);
+    bool small = outline.before && outline.high[0] - outline.low[0] < 2 * small_px &&
+                 outline.high[1] - outline.low[1] < 2 * small_px;
+    if (small) {
+        level = volume->levels_count - 1;
+        grid = &volume->levels[level];
+        place_small(picture, &outline, &box, tree->scale * grid->voxel_m, rect, texels);
+    } else {
+        place_box(picture, tree, volume, grid->voxel_m, texels);
+        if (level > 0) {
+            box = box_of(picture, tree, volume, grid);
+            seen = outline_of(picture, &box, &outline);
+        }
+        for (int i = 0; i < 2; i++)
+            rect_between(rect, i, ceilf(outline.low[i]), floorf(outline.high[i]),
+                         seen ? size_px[i] : 0);
+    }
+    uint32_t albedo[3];
+    for (int c = 0; c < 3; c++)
+        albedo[c] = (uint32_t)(volume->albedo[c] * 1023 + 0.5f);
+    for (int i = 0; i < 2; i++) {
+        texels->low[i] = (uint16_t)rect->low[i];
+        texels->high[i] = (uint16_t)rect->high[i];
+    }
+    texels->first_cell = state->first_cells[tree->species][level];
+    texels->size = pack_10(grid->size) | (uint32_t)small << 30;
+    texels->turn[0] = tree->cosine;
+    texels->turn[1] = tree->sine;
+    texels->clear = picture->fog_density > 0
+                        ? expf(-picture->fog_density * sqrtf(dot3(box.middle_m, box.middle_m)))
+                        : 1;
+    texels->albedo = pack_10(albedo);
+}
+
+/* Trees in view to the shader; false when there are none. */
+static bool upload_trees(struct workspace *workspace, struct state *state, const struct view *view)
+{
+    struct gl *gl = workspace->gl;
+    const struct picture picture = {
+        .view = view,
+        .focal_px = cull_focal_px(view),
+        .fog_density = workspace->effects & EFFECT_FOG ? state->scene->fog.density_per_m : 0,
+        .bias = state->options.bias,
+    };
+    struct cull_list list = cull_view(state->cull, view, CULL_FRONT_TO_BACK);
+    struct tiles *tiles = state->tiles;
+    for (size_t i = 0; i < list.count; i++)
+        see(state, &picture, list.instances[i], list.depths_m[i], &state->rects[i],
+            &state->texels[i]);
+    tiles_bin(tiles, view->width_px, view->height_px, state->rects, list.count);
+    size_t tiles_count = (size_t)(tiles->columns * tiles->rows);
+    size_t entries_count = tiles->first[tiles_count];
+    if (entries_count == 0)
+        return false;
+    gl->NamedBufferSubData(state->buffers[TREES], 0,
+                           (GLsizeiptr)(list.count * sizeof *state->texels), state->texels);
+    gl->NamedBufferSubData(state->buffers[FIRSTS], 0,
+                           (GLsizeiptr)((tiles_count + 1) * sizeof(uint32_t)), tiles->first);
+    gl->NamedBufferSubData(state->buffers[ENTRIES], 0,
+                           (GLsizeiptr)(entries_count * sizeof(uint32_t)), tiles->entries);
+    return true;
+}
+
+static void set_uniforms(struct workspace *workspace, const struct state *state,
+                         const struct view *view)
+{
+    struct gl *gl = workspace->gl;
+    const GLuint program = state->program;
+    const float focal = cull_focal_px(view);
+    const float width = (float)view->width_px, height = (float)view->height_px;
+    float axes[9];
+    memcpy(axes, view->right, sizeof view->right);
+    memcpy(axes + 3, view->up, sizeof view->up);
+    memcpy(axes + 6, view->forward, sizeof view->forward);
+    shade_uniforms(workspace, program, state->scene, view);
+    gl->Uniform2f(gl_uniform(gl, program, "pixel_slope"), 1 / focal, 1 / focal);
+    gl->Uniform2f(gl_uniform(gl, program, "corner_slope"), 0.5f * (1 - width) / focal,
+                  0.5f * (1 - height) / focal);
+    gl->UniformMatrix3fv(gl_uniform(gl, program, "axes"), 1, GL_FALSE, axes);
+    gl->Uniform3i(gl_uniform(gl, program, "tiling"), state->tiles->side_px, state->tiles->columns,
+                  view->height_px);
+    gl->Uniform2f(gl_uniform(gl, program, "depth_terms"), view->projection[2][2],
+                  view->projection[3][2]);
+    gl->Uniform4f(gl_uniform(gl, program, "limits"), view->near_m, state->options.stop,
+                  state->options.step, workspace->effects & EFFECT_TWO_SIDED ? 0 : 1);
+}
+
+/* The target's colour without its depth, which the shader reads. */
+static void draw_trees(struct workspace *workspace, const struct state *state,
+                       const struct view *view, const struct target *target)
+{
+    struct gl *gl = workspace->gl;
+    gl->NamedFramebufferTexture(state->framebuffer, GL_COLOR_ATTACHMENT0, target->color, 0);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, state->framebuffer);
+    gl->UseProgram(state->program);
+    gl->BindVertexArray(state->vertices);
+    for (GLuint i = 0; i < BUFFERS; i++)
+        gl->BindTextureUnit(i, state->textures[i]);
+    gl->BindTextureUnit(DEPTH, target->depth);
+    set_uniforms(workspace, state, view);
+    gl->Disable(GL_DEPTH_TEST);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gl_draw_arrays(gl, GL_TRIANGLES, 0, 3, 1);
+    gl->Disable(GL_BLEND);
+    gl->Enable(GL_DEPTH_TEST);
+    for (GLuint i = 0; i < TEXTURES; i++)
+        gl->BindTextureUnit(i, 0);
+    gl->BindVertexArray(0);
+    gl->UseProgram(0);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+}
+
+static enum status draw(struct workspace *workspace, void *own, const struct view *view,
+                        struct target *target)
+{
+    struct state *state = own;
+    struct gl *gl = workspace->gl;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    backdrop_draw(workspace, state->backdrop, view);
+    gl->Flush(); /* a software GL fills the backdrop while the trees are culled and binned */
+    if (upload_trees(workspace, state, view))
+        draw_trees(workspace, state, view, target);
+    return gl_check(gl, "ray-texels-gl", workspace->error);
+}
+
+extern const struct method ray_texels_gl_method;
+const struct method ray_texels_gl_method = {
+    .abi = METHOD_ABI,
+    .name = "ray-texels-gl",
+    .summary = "rays marched through voxels of the plants, by OpenGL",
+    .source = "Kajiya and Kay 1989, doi:10.1145/74334.74361; Neyret 1998, doi:10.1109/2945.675652; "
+              "Heitz et al. 2015, doi:10.1145/2766988; Senegas 2001",
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .options = table,
+    .options_size = sizeof(struct options),
+    .prepare = prepare,
+    .draw = draw,
+};

@@ -1,0 +1,167 @@
+// Each pixel's ray through the trees of its tile, front to back. Voxels and closures: harness/bake/voxels.h.
+uniform vec2 pixel_slope;   // a pixel's step across and up, per metre along the view
+uniform vec2 corner_slope; // of the centre of the lower left pixel
+uniform mat3 axes;          // right, up, forward
+uniform ivec3 tiling;       // side of a tile (px), tiles in a row, the picture's height (px)
+uniform vec2 depth_terms;   // depth along the view = y / (x + ndc z)
+uniform vec4 limits;        // near (m), least transmittance, step (voxels), 1: leaves are lit on one side only
+
+#pragma stage vertex
+void main()
+{
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+
+#pragma stage fragment
+layout(binding = 0) uniform usamplerBuffer cells;    // index or distance of each voxel
+layout(binding = 1) uniform usamplerBuffer voxels;   // 16 bytes each
+layout(binding = 2) uniform usamplerBuffer trees;    // three texels a tree
+layout(binding = 3) uniform usamplerBuffer firsts;   // of each tile's entries
+layout(binding = 4) uniform usamplerBuffer entries;  // trees, tile by tile
+layout(binding = 5) uniform sampler2D depths;
+layout(location = 0) out vec4 color;
+
+// x' M y of a packed matrix: its 5 entries of 6 bits, each by its factor.
+struct form {
+    float base, xx, yy, xy, xz, yz;
+};
+
+form form_of(vec3 x, vec3 y)
+{
+#ifdef ISOTROPIC
+    return form(dot(x, y) / 3.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+#else
+    form f;
+    float zz = x.z * y.z;
+    f.xx = (x.x * y.x - zz) / 63.0;
+    f.yy = (x.y * y.y - zz) / 63.0;
+    f.xy = (x.x * y.y + x.y * y.x) / 62.0;
+    f.xz = (x.x * y.z + x.z * y.x) / 62.0;
+    f.yz = (x.y * y.z + x.z * y.y) / 62.0;
+    f.base = zz - 31.0 * (f.xy + f.xz + f.yz);
+    return f;
+#endif
+}
+
+float value(form f, uint m)
+{
+#ifdef ISOTROPIC
+    return f.base;
+#else
+    return f.base + f.xx * float(m & 63u) + f.yy * float(m >> 6 & 63u) + f.xy * float(m >> 12 & 63u) +
+           f.xz * float(m >> 18 & 63u) + f.yz * float(m >> 24 & 63u);
+#endif
+}
+
+// sqrt(1 - x x) + x asin(x) of x squared, 0..1; absolute error 5e-4.
+float arc(float x2)
+{
+    return 0.99953635 + x2 * (0.51276042 + x2 * (-0.0092389264 + x2 * 0.066520270));
+}
+
+vec3 bytes(uint word)
+{
+    return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u);
+}
+
+// What is left of 1 behind `span` voxels of it (a), and its radiance.
+vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both)
+{
+    float depth = uintBitsToFloat(words.x) * sqrt(max(value(eye, words.y), 0.0));
+    float seen = max(value(eye, words.z), 1e-4), lit = max(value(sun, words.z), 1e-4);
+    float toward = value(both, words.z) * inversesqrt(seen);
+    float one_sided = max(float(words.w >> 28) / 15.0, limits.w);
+    float even = 0.63661977 * sqrt(lit) * arc(min(toward * toward / lit, 1.0));
+    float diffuse = (even + 0.5 * one_sided * (toward - even)) / (0.75 + float(words.w >> 24 & 15u) / 60.0);
+    return vec4(bytes(words.w) * (ambient + sun_radiance * max(diffuse, 0.0)), exp(-depth * span));
+}
+
+void main()
+{
+    vec2 pixel = floor(gl_FragCoord.xy);
+    vec2 slope = corner_slope + pixel * pixel_slope;
+    vec3 ray = axes * vec3(slope, 1.0);
+    float stretch = length(ray);
+    ray /= stretch;
+    float depth = 2.0 * texelFetch(depths, ivec2(pixel), 0).r - 1.0;
+    depth = depth < 1.0 ? depth_terms.y / (depth_terms.x + depth) : 1e30;
+
+    ivec2 at = ivec2(int(pixel.x), tiling.z - 1 - int(pixel.y));
+    int tile = at.y / tiling.x * tiling.y + at.x / tiling.x;
+    int entry = int(texelFetch(firsts, tile).r), end = int(texelFetch(firsts, tile + 1).r);
+    float left = 1.0;
+    vec3 sum = vec3(0.0);
+    while (entry < end && left > limits.y) {
+        // The next tree whose rectangle holds the pixel. Loops are tested at their top: what they leave behind is
+        // then a value that a masked lane keeps, which some drivers need (llvmpipe 22).
+        int tree = 0;
+        uvec4 place = uvec4(0u);
+        bool inside = false;
+        while (!inside && entry < end) {
+            tree = 3 * int(texelFetch(entries, entry).r);
+            place = texelFetch(trees, tree);
+            ivec2 low = ivec2(place.x & 65535u, place.x >> 16), high = ivec2(place.y & 65535u, place.y >> 16);
+            inside = all(greaterThanEqual(at, low)) && all(lessThanEqual(at, high));
+            entry++;
+        }
+        if (!inside)
+            break;
+        vec4 where = uintBitsToFloat(texelFetch(trees, tree + 1));
+        uvec4 looks = texelFetch(trees, tree + 2);
+        vec2 turn = uintBitsToFloat(looks.xy);
+        float clear = uintBitsToFloat(looks.z);
+        vec3 u = rotate_y(ray, turn.x, -turn.y), l = rotate_y(sun_direction, turn.x, -turn.y);
+        form f_eye = form_of(u, u), f_sun = form_of(l, l), f_both = form_of(-u, l);
+        vec3 size = vec3(place.w & 1023u, place.w >> 10 & 1023u, place.w >> 20 & 1023u);
+        vec3 white = vec3(looks.w & 1023u, looks.w >> 10 & 1023u, looks.w >> 20 & 1023u) / (1023.0 * 255.0);
+
+        // The ray from where it enters the box, in voxels.
+        float weight = 1.0, along = 0.0, span;
+        vec3 start = vec3(0.0);
+        if ((place.w >> 30) != 0u) {
+            // Smaller than a pixel: spread over the four pixels around its middle.
+            vec2 off = max(1.0 - abs(vec2(at) - where.xy), 0.0);
+            weight = off.x * off.y * where.z;
+            span = where.w < depth ? 1.0 : 0.0;
+        } else {
+            vec3 slow = mix(u, vec3(1e-10), lessThan(abs(u), vec3(1e-10)));
+            vec3 one = -where.xyz / slow, other = (size - where.xyz) / slow;
+            vec3 low = min(one, other), high = max(one, other);
+            float scale = stretch * where.w;
+            float from = max(max(low.x, limits.x * scale), max(low.y, low.z));
+            span = min(min(high.x, depth * scale), min(high.y, high.z)) - from;
+            start = where.xyz + from * u;
+        }
+        float leap = 1.0 / max(abs(u.x), max(abs(u.y), abs(u.z)));
+        ivec3 grid = ivec3(size);
+        vec3 most = size - 0.5;
+        vec3 gathered = vec3(0.0);
+        float before = left;
+        while (along < span && left > limits.y) {
+            // Through empty space.
+            uint cell = 0u;
+            float pace = 0.0;
+            while (cell < FIRST && along < span) {
+                pace = min(limits.z, span - along);
+                float middle = along + 0.5 * pace;
+                ivec3 p = ivec3(clamp(start + middle * u, vec3(0.0), most));
+                cell = texelFetch(cells, int(place.z) + (p.z * grid.y + p.y) * grid.x + p.x).r;
+                along += limits.z;
+                if (cell < FIRST)
+                    along = max(along, middle + (float(cell) - 1.0) * leap);
+            }
+            if (cell < FIRST)
+                break;
+            vec4 met = sample_voxel(texelFetch(voxels, int(cell - FIRST)), pace, f_eye, f_sun, f_both);
+            float share = min(left * (1.0 - met.a) * weight, left);
+            left -= share;
+            gathered += share * met.rgb;
+        }
+        sum += clear * white * gathered + (before - left) * (1.0 - clear) * fog_color;
+    }
+    if (left <= limits.y) {  // what was left would have been more of the same
+        sum /= 1.0 - left;
+        left = 0.0;
+    }
+    color = vec4(sum, 1.0 - left);
+}

@@ -1,0 +1,243 @@
+/* ray-texels-gl: transmittance and light against closed forms, whole pictures against the march on
+ * the CPU; tiles against brute force. */
+#include "testing_tree.h"
+
+#include "reference_world.h"
+
+#include "bake/tiles.h"
+
+static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
+
+/* Layers of horizontal stripes that face +z, 16 m wide and high, each in a voxel of 1 m of its own:
+ * half of each voxel's face is covered, so light passes each layer by half. */
+static struct plant *layers(struct arena *arena, int count)
+{
+    enum { STRIPES = 16 };
+    struct mesh *mesh = mesh_new(arena, MATERIAL_LEAF, 0.5f, (size_t)(2 * STRIPES * count));
+    for (int layer = 0; layer < count; layer++)
+        for (int stripe = 0; stripe < STRIPES; stripe++) {
+            double z = count > 1 ? layer * (1 + 0.5 / (count - 1)) : 0, y = stripe;
+            double corners[4][3] = {{-8, y, z}, {8, y, z}, {8, y + 0.5, z}, {-8, y + 0.5, z}};
+            mesh_quad(mesh, corners[0], corners[1], corners[2], corners[3]);
+        }
+    mesh_finish(arena, mesh);
+    setenv("TREELINE_CACHE", "off", 1);
+    return plant_from_mesh(arena, "layers", mesh);
+}
+
+/* 12 m of the layers' middle, along -z. */
+static struct view layers_view(const struct scene *scene, float eye_z_m)
+{
+    struct view view;
+    struct scene zoomed = *scene;
+    zoomed.camera.fov_y_rad = 2 * atanf(6.0f / 100);
+    zoomed.camera.near_m = 1e-3f;
+    view_look_at(&zoomed, (float[3]){0, 7.75f, eye_z_m}, (float[3]){0, 7.75f, eye_z_m - 1}, &view);
+    return view;
+}
+
+static void expect_coverage(const struct frame *frame, double coverage)
+{
+    for (int i = 0; i < TREE_PIXELS; i++)
+        if (fabs(frame->rgba[4 * i + 3] - coverage) > 0.004)
+            fail_msg("pixel %d: coverage %g, not %g", i, (double)frame->rgba[4 * i + 3], coverage);
+}
+
+static void test_ray_texels_gl__each_layer_lets_half_of_the_light_through(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    static const char *const options[] = {"resolution=16,stop=0", "resolution=16,stop=0,step=0.25",
+                                          "resolution=16,stop=0,bias=-4"};
+    for (int count = 1; count <= 5; count += 2)
+        for (int k = 0; k < 3; k++) {
+            struct scene *scene = tree_scene(arena, layers(arena, count), 1, 0);
+            struct view view = layers_view(scene, 100);
+            struct frame *frame =
+                tree_draw(arena, tree_method("ray-texels-gl"), options[k], scene, lit, &view, NULL);
+            expect_coverage(frame, 1 - pow(0.5, count));
+        }
+    arena_destroy(arena);
+}
+
+static void test_ray_texels_gl__an_eye_within_sees_what_is_before_it(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct scene *scene = tree_scene(arena, layers(arena, 5), 1, 0);
+    struct view view = layers_view(scene, 2.25f); /* two layers and a half of one */
+    struct frame *frame = tree_draw(arena, tree_method("ray-texels-gl"), "resolution=16,stop=0",
+                                    scene, lit, &view, NULL);
+    expect_coverage(frame, 1 - pow(0.5, 2.5));
+    arena_destroy(arena);
+}
+
+static void test_ray_texels_gl__a_tree_in_another_hides_what_is_left(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct scene *scene = tree_scene(arena, layers(arena, 1), 3, 0);
+    scene->instances[1].position_m[2] = 0.3f;
+    scene->instances[2].rotation_rad = 3.1415927f;
+    struct view view = layers_view(scene, 100);
+    struct frame *frame = tree_draw(arena, tree_method("ray-texels-gl"), "resolution=16,stop=0",
+                                    scene, lit, &view, NULL);
+    expect_coverage(frame, 1 - pow(0.5, 3));
+    arena_destroy(arena);
+}
+
+/* All normals are +z and seen from +z: |N.L| or max(0, N.L) of the sun, and the sky. */
+static void test_ray_texels_gl__leaves_that_lie_alike_are_lit_as_one(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    for (int k = 0; k < 8; k++) {
+        struct scene *scene = tree_scene(arena, layers(arena, 3), 1, 0.7853982f * (float)k);
+        unsigned effects = k % 2 ? EFFECT_AMBIENT : lit;
+        struct view view = layers_view(scene, 100);
+        view.sun_direction[0] = cosf(0.61f) * sinf(0.3f + 0.7853982f * (float)k);
+        view.sun_direction[2] = cosf(0.61f) * cosf(0.3f + 0.7853982f * (float)k);
+        double facing = view.sun_direction[2];
+        facing = effects & EFFECT_TWO_SIDED ? fabs(facing) : fmax(facing, 0);
+        struct frame *frame = tree_draw(arena, tree_method("ray-texels-gl"), "resolution=16", scene,
+                                        effects, &view, NULL);
+        for (int c = 0; c < 3; c++) {
+            double wants = 0.5 * (scene->sun.radiance[c] * facing + scene->ambient[c]);
+            double has = tree_mean(frame, c) / tree_mean(frame, 3);
+            if (fabs(has - wants) > 0.005)
+                fail_msg("sun %d, channel %d: %g, not %g", k, c, has, wants);
+        }
+    }
+    arena_destroy(arena);
+}
+
+static struct frame *draw_on_cpu(struct arena *arena, const char *options, enum lod lod,
+                                 const struct scene *scene, unsigned effects,
+                                 const struct view *view)
+{
+    const struct method *method = tree_method("ray-texels");
+    struct error error = {0};
+    struct frame *frame = frame_create(arena, view->width_px, view->height_px, false);
+    struct target target = {.width_px = view->width_px,
+                            .height_px = view->height_px,
+                            .format = TARGET_RGBA32F,
+                            .pixels = frame->rgba};
+    struct workspace workspace = {.arena = arena,
+                                  .error = &error,
+                                  .effects = effects,
+                                  .lod = lod,
+                                  .format = TARGET_RGBA32F,
+                                  .threads = 2};
+    void *values = arena_alloc(arena, 1, method->options_size), *own = NULL;
+    options_default(method->options, values);
+    if (options_parse(method->options, options, values, &error) != STATUS_OK ||
+        method->prepare(&workspace, scene, values, &own) != STATUS_OK ||
+        method->draw(&workspace, own, view, &target) != STATUS_OK)
+        fail_msg("%s", error.text);
+    return frame;
+}
+
+/* The CPU turns light for blocks of pixels, this method for each, so they differ a little. */
+static void test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *scene, *options;
+        size_t trees;
+        enum lod lod;
+        unsigned effects;
+    } cases[] = {
+        {"oak-hills", "resolution=48", 300, LOD_HIGH, EFFECT_TWO_SIDED | EFFECT_FOG},
+        {"oak-hills", "resolution=48,model=isotropic", 30, LOD_LOW, EFFECT_AMBIENT},
+        {"poplar-forest", "resolution=64", 200, LOD_AUTO, EFFECT_TWO_SIDED | EFFECT_AMBIENT},
+        {"poplar-forest", "resolution=32", 20000, LOD_HIGH, EFFECT_TWO_SIDED | EFFECT_AMBIENT},
+        {"walk-in", "resolution=32,bias=-1", 40, LOD_HIGH, EFFECT_TWO_SIDED},
+    };
+    setenv("TREELINE_CACHE", "off", 1);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct arena *arena = arena_create(0);
+        struct error error = {0};
+        struct scene *scene;
+        struct view view;
+        struct scene_request request = {cases[k].trees, 1, 160, 120};
+        if (scene_load(arena, cases[k].scene, &request, &scene, &error) != STATUS_OK)
+            fail_msg("%s", error.text);
+        view_at(scene, 0.3, &view);
+        struct frame *cpu =
+            draw_on_cpu(arena, cases[k].options, cases[k].lod, scene, cases[k].effects, &view);
+        struct frame *gl =
+            tree_draw_as(arena, tree_method("ray-texels-gl"), cases[k].options, cases[k].lod,
+                         TARGET_RGBA32F, scene, cases[k].effects, &view, NULL);
+        double rmse = tree_rmse(cpu, gl), off = tree_difference(cpu, gl, false);
+        double mirrored = tree_difference(cpu, gl, true), covered = tree_mean(cpu, 3);
+        if (rmse > 0.004 || off > 0.05 * covered || mirrored < 10 * off)
+            fail_msg("%s, %s: rmse %g, coverage %g off by %g, mirrored by %g", cases[k].scene,
+                     cases[k].options, rmse, covered, off, mirrored);
+        arena_destroy(arena);
+    }
+}
+
+static void test_tiles__hold_what_touches_them_in_order(void **state)
+{
+    (void)state;
+    enum { COUNT = 300, WIDTH = 203, HEIGHT = 97 };
+    struct arena *arena = arena_create(0);
+    struct random random = random_seed(5, 1);
+    struct tiles *tiles = tiles_create(arena, COUNT);
+    struct tiles_rect *rects = ARENA_ARRAY(arena, struct tiles_rect, COUNT);
+    for (int i = 0; i < COUNT; i++)
+        for (int axis = 0; axis < 2; axis++) {
+            int size = axis ? HEIGHT : WIDTH, first = (int)random_below(&random, (uint32_t)size);
+            int last = first + (int)random_below(&random, 40) - 4; /* some hold nothing */
+            rects[i].low[axis] = (int16_t)first;
+            rects[i].high[axis] = (int16_t)(last < size ? last : size - 1);
+        }
+    tiles_bin(tiles, WIDTH, HEIGHT, rects, COUNT);
+    assert_int_equal(tiles->side_px, TILES_SIDE_LEAST_PX);
+    uint32_t at = 0;
+    for (int tile = 0; tile < tiles->columns * tiles->rows; tile++) {
+        int x = tile % tiles->columns * tiles->side_px, y = tile / tiles->columns * tiles->side_px;
+        assert_int_equal(tiles->first[tile], at);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            const struct tiles_rect *r = &rects[i];
+            if (r->low[0] > r->high[0] || r->low[1] > r->high[1] || r->high[0] < x ||
+                r->high[1] < y || r->low[0] >= x + tiles->side_px ||
+                r->low[1] >= y + tiles->side_px)
+                continue;
+            assert_int_equal(tiles->entries[at++], i);
+        }
+    }
+    assert_int_equal(tiles->first[tiles->columns * tiles->rows], at);
+    arena_destroy(arena);
+}
+
+static void test_tiles__grow_until_all_fits(void **state)
+{
+    (void)state;
+    enum { COUNT = 2000, SIDE = 8192 };
+    struct arena *arena = arena_create(0);
+    struct tiles *tiles = tiles_create(arena, COUNT);
+    struct tiles_rect *rects = ARENA_ARRAY(arena, struct tiles_rect, COUNT);
+    for (int i = 0; i < COUNT; i++)
+        rects[i] = (struct tiles_rect){{0, 0}, {SIDE - 1, SIDE - 1}};
+    tiles_bin(tiles, SIDE, SIDE, rects, COUNT);
+    size_t count = (size_t)(tiles->columns * tiles->rows);
+    assert_true(tiles->side_px > 64 && count <= TILES_MAX);
+    assert_int_equal(tiles->first[count], COUNT * count);
+    assert_true(COUNT * count <= tiles->capacity);
+    arena_destroy(arena);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ray_texels_gl__each_layer_lets_half_of_the_light_through),
+        cmocka_unit_test(test_ray_texels_gl__an_eye_within_sees_what_is_before_it),
+        cmocka_unit_test(test_ray_texels_gl__a_tree_in_another_hides_what_is_left),
+        cmocka_unit_test(test_ray_texels_gl__leaves_that_lie_alike_are_lit_as_one),
+        cmocka_unit_test(test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws),
+        cmocka_unit_test(test_tiles__hold_what_touches_them_in_order),
+        cmocka_unit_test(test_tiles__grow_until_all_fits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
