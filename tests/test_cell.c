@@ -111,17 +111,17 @@ static void test_cell__a_method_s_own_counts_are_those_of_a_picture(void **state
 {
     const char *folder = *state;
     struct arena *arena = arena_create(0);
-    struct plan *plan = plan_of(
-        arena, arena_printf(arena, "tiny/%s/trees=1/size=48x36", plugin(arena, "honest-cpu")));
+    struct plan *plan =
+        plan_of(arena, arena_printf(arena, "tiny/%s/trees=1/size=48x36", plugin(arena, "counts")));
     struct result result;
     if (cell_run(arena, plan, plan->cells, 0, folder, &result))
         fail_msg("%s", result.message);
-    /* A ray a pixel; two pictures, their neighbours and the timed frames do not add up. */
+    /* Two pictures, their neighbours and the timed frames do not add up. */
     assert_int_equal(result.views_count, 2);
     assert_true(result.rays == 48 * 36);
-    assert_true(isnan(result.occlusion_rays) && isnan(result.lookups));
-    /* It counted no bytes: the picture alone, of float RGBA. */
-    assert_true(result.moved_bytes == 48 * 36 * 16);
+    assert_true(isnan(result.occlusion_rays) && result.lookups == 3 * 48 * 36);
+    /* The picture of float RGBA is counted here. */
+    assert_true(result.moved_bytes == 1000 + 48 * 36 * 16);
     plan = plan_of(arena, "tiny/null/trees=1/size=48x36/target=rgba8");
     assert_int_equal(cell_run(arena, plan, plan->cells, 0, folder, &result), STATUS_OK);
     assert_true(isnan(result.rays) && result.moved_bytes == 48 * 36 * 4);

@@ -57,7 +57,6 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
                 sky_radiance(&state->scene->sky, ray, pixel);
             pixel[3] = 0;
         }
-    workspace->tally.rays += (uint64_t)target->width_px * (uint64_t)target->height_px;
     return STATUS_OK;
 }
 
