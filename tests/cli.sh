@@ -159,7 +159,9 @@ is 'calibrate prints a row for each kind of work' $rc -eq 0 -a "$(grep -cE '^[a-
 try calibrate --seconds 0.05 --size 128x128 --json
 is 'calibrate --json prints the record' "$(python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); print(all(m["rate"] > 0 for m in d["measures"].values()))' "$work/out")" = True
 refuses 'a picture too small to calibrate on' 64 "--size: '3x3' is not WxH in pixels, each side in 128..2048" calibrate --size 3x3
-refuses 'a back end that is none' 69 "'foo' is not one of" calibrate --backend foo
+for verb in 'calibrate' 'run --scene tiny --method null' 'render --scene tiny --method null -o x.png'; do
+  refuses "$verb: a back end that is none" 65 "'foo' is not one of" $verb --backend foo
+done
 refuses 'a target that is none' 64 "--target: 'rgb' is not one of" calibrate --target rgb
 
 # 4. Cells that fail are results.

@@ -108,12 +108,12 @@ static void test_gl__a_probe_finds_a_back_end_and_the_environment_chooses_one(vo
     assert_int_equal(gl_context_create(NULL, 2, &gl, &error), STATUS_OK);
     gl_context_destroy(gl);
     setenv("TREELINE_GL", "vulkan", 1);
-    assert_int_equal(gl_context_create(NULL, 2, &gl, &error), STATUS_UNAVAILABLE);
+    assert_int_equal(gl_context_create(NULL, 2, &gl, &error), STATUS_INVALID);
     assert_null(gl);
     assert_non_null(strstr(error.text, "TREELINE_GL: 'vulkan' is not one of"));
     assert_non_null(strstr(error.text, gl_backends[0]));
     unsetenv("TREELINE_GL");
-    assert_int_equal(gl_context_create("", 2, &gl, &error), STATUS_UNAVAILABLE);
+    assert_int_equal(gl_context_create("", 2, &gl, &error), STATUS_INVALID);
     gl_context_destroy(NULL);
 }
 

@@ -337,6 +337,22 @@ static void test_plan__the_filter_keeps_what_it_matches(void **state)
             "trees=77", "none of the 1");
     refused(&(struct plan_request){ONE_SCENE, ONE_METHOD, .filter = "("}, STATUS_INVALID, "filter",
             "regular expression");
+    /* What would keep the system's compiler or matcher busy for ever. */
+    char longest[1002];
+    memset(longest, 'a', sizeof longest - 1);
+    longest[sizeof longest - 1] = 0;
+    static const char *const endless[] = {"((((a{100}){100}){100}){100}){100}",
+                                          "(((a{2,}){2,900}){2})", "(a*)*\\1b", "x{1001}"};
+    for (size_t i = 0; i < sizeof endless / sizeof *endless; i++)
+        refused(&(struct plan_request){ONE_SCENE, ONE_METHOD, .filter = endless[i]}, STATUS_INVALID,
+                "filter", "may take for ever");
+    refused(&(struct plan_request){ONE_SCENE, ONE_METHOD, .filter = longest}, STATUS_INVALID,
+            "filter", "longer than 1000 bytes");
+    /* Braces in brackets and behind a backslash repeat nothing. */
+    refused(&(struct plan_request){ONE_SCENE, ONE_METHOD, .filter = "[]{9999}]x"}, STATUS_INVALID,
+            "filter", "none of the 1");
+    refused(&(struct plan_request){ONE_SCENE, ONE_METHOD, .filter = "\\{9999\\}"}, STATUS_INVALID,
+            "filter", "none of the 1");
 }
 
 static void test_plan__settings_out_of_range_are_refused(void **state)

@@ -554,10 +554,12 @@ static void test_files__that_are_torn_are_refused(void **state)
                           "property list uchar int vertex_indices\nend_header\n"
                           "0123456789ab\3");
     put_text("torn.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    put_text("marked.obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     put_text("noise.glb", "glTF\1\2\3\4 this is not one");
     put_text("lost.gltf", gltf(arena, "\"byteLength\":140,\"uri\":\"lost.bin\"",
                                "\"uri\":\"leaf.png\"", "", ""));
     refused("torn.glb", NULL, STATUS_INVALID, "torn.glb: ");
+    refused("marked.obj", NULL, STATUS_INVALID, "marked.obj:1: a byte order mark");
     refused("torn.gltf", NULL, STATUS_INVALID, "torn.gltf: ");
     refused("torn.ply", NULL, STATUS_INVALID, "torn.ply: ");
     refused("short.ply", NULL, STATUS_INVALID, "ends after 3 of 4 elements");

@@ -1,12 +1,12 @@
 /* The runner: a child a check, and what became of it. */
 #include "conform/conform.h"
 
+#include "base/pattern.h"
 #include "cell/process.h"
 #include "conform/subject.h"
 
 #include <errno.h>
 #include <ftw.h>
-#include <regex.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -196,12 +196,13 @@ enum status conform_run(struct arena *arena, const struct conform_request *given
     *result = STATUS_OK;
     if (!(request.timeout_seconds > 0))
         request.timeout_seconds = CONFORM_TIMEOUT_SECONDS;
-    if (request.pattern && regcomp(&pattern, request.pattern, REG_EXTENDED | REG_NOSUB))
-        return error_set(error, STATUS_USAGE, "--check: '%s' is not a regular expression",
-                         request.pattern);
+    enum status status = STATUS_OK;
+    if (request.pattern)
+        status = pattern_compile(request.pattern, "--check", STATUS_USAGE, &pattern, error);
+    if (status)
+        return status;
     const char *base = getenv("TMPDIR");
     char *folder = arena_printf(arena, "%s/treeline-conform-XXXXXX", base && *base ? base : "/tmp");
-    enum status status = STATUS_OK;
     if (!mkdtemp(folder))
         status = error_errno(error, STATUS_IO, "%s", folder);
     if (!status) {

@@ -178,9 +178,35 @@ static char *scene_end(char *text)
     return json ? json + strlen(".json") : strchr(text, '/');
 }
 
+enum status cell_set_scene(struct cell_set *set, const char *name,
+                           const struct scene_summary **summary, struct error *error)
+{
+    struct known_scene *known = set->scenes;
+    while (known && strcmp(known->name, name) != 0)
+        known = known->next;
+    if (!known) {
+        known = ARENA_NEW(set->arena, struct known_scene);
+        known->name = arena_strdup(set->arena, name);
+        enum status status = scene_summary(set->arena, name, &known->summary, error);
+        if (status)
+            return status;
+        known->next = set->scenes;
+        set->scenes = known;
+    }
+    *summary = &known->summary;
+    return STATUS_OK;
+}
+
 enum status cell_parse(struct arena *arena, const char *name, struct cell *cell,
                        struct error *error)
 {
+    return cell_set_parse(&(struct cell_set){.arena = arena}, name, cell, error);
+}
+
+enum status cell_set_parse(struct cell_set *set, const char *name, struct cell *cell,
+                           struct error *error)
+{
+    struct arena *arena = set->arena;
     *cell = (struct cell){
         .trees = SIZE_MAX, .lod = LOD_AUTO, .format = TARGET_RGBA16F, .seed = CELL_SEED};
     char *text = arena_strdup(arena, name);
@@ -211,12 +237,12 @@ enum status cell_parse(struct arena *arena, const char *name, struct cell *cell,
         *colon = 0;
     cell->method_name = method;
     cell->options = colon ? colon + 1 : "";
-    struct scene_summary summary;
+    const struct scene_summary *summary;
     status = method_find(method, &cell->method, error);
     if (!status)
-        status = scene_summary(arena, cell->scene, &summary, error);
+        status = cell_set_scene(set, cell->scene, &summary, error);
     if (!status)
-        status = cell_complete(arena, cell, &summary, error);
+        status = cell_complete(arena, cell, summary, error);
     return status ? error_context(error, "cell '%s'", name) : STATUS_OK;
 }
 

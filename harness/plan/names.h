@@ -10,9 +10,17 @@
 #define CELL_SIDE_MAX_PX 16384
 #define CELLS_MAX 100000
 
+/* A scene whose file was read. */
+struct known_scene {
+    const char *name;
+    struct scene_summary summary;
+    struct known_scene *next;
+};
+
 /* A growing array of cells, each name once. */
 struct cell_set {
     struct arena *arena;
+    struct known_scene *scenes; /* each file is read once */
     size_t count, capacity;
     size_t asked; /* cells added, those of a name that was there included */
     struct cell *cells;
@@ -23,6 +31,13 @@ struct cell_set {
 /* Splits "a,b,c" at the commas into the arena. Empty items are STATUS_INVALID, named after what. */
 enum status text_split(struct arena *arena, const char *what, const char *text, char ***items,
                        size_t *count, struct error *error);
+
+/* What is known of a scene, in the set's arena. */
+enum status cell_set_scene(struct cell_set *set, const char *name,
+                           const struct scene_summary **summary, struct error *error);
+/* cell_parse with the set's scenes. */
+enum status cell_set_parse(struct cell_set *set, const char *name, struct cell *cell,
+                           struct error *error);
 
 /* Adds a copy of the cell unless a cell of that name is there. STATUS_INVALID after CELLS_MAX. */
 enum status cell_set_add(struct cell_set *set, const struct cell *cell, struct error *error);

@@ -3,13 +3,13 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/pattern.h"
 #include "base/random.h"
 #include "plan/names.h"
 #include "plan/settings.h"
 #include "wall/json.h"
 
 #include <glob.h>
-#include <regex.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -205,18 +205,18 @@ static enum status group_expand(struct cell_set *set, const struct group *group,
                                 struct error *error)
 {
     for (size_t s = 0; s < group->scenes_count; s++) {
-        struct scene_summary summary;
+        const struct scene_summary *summary;
         size_t *trees, trees_count;
-        enum status status = scene_summary(set->arena, group->scenes[s], &summary, error);
+        enum status status = cell_set_scene(set, group->scenes[s], &summary, error);
         if (!status)
-            status = trees_items(set->arena, group->trees, &summary, &trees, &trees_count, error);
+            status = trees_items(set->arena, group->trees, summary, &trees, &trees_count, error);
         for (size_t t = 0; !status && t < trees_count; t++) {
             struct cell pattern = {.scene = group->scenes[s],
                                    .trees = trees[t],
                                    .lod = LOD_AUTO,
                                    .format = TARGET_RGBA16F,
                                    .seed = seed};
-            status = patterns_expand(set, group, pattern, &summary, error);
+            status = patterns_expand(set, group, pattern, summary, error);
         }
         if (status)
             return status;
@@ -227,13 +227,9 @@ static enum status group_expand(struct cell_set *set, const struct group *group,
 static enum status cells_filter(struct cell_set *set, const char *filter, struct error *error)
 {
     regex_t expression;
-    int code = regcomp(&expression, filter, REG_EXTENDED | REG_NOSUB);
-    if (code) {
-        char why[128];
-        regerror(code, &expression, why, sizeof why);
-        return error_set(error, STATUS_INVALID, "filter: '%s' is no regular expression: %s", filter,
-                         why);
-    }
+    enum status status = pattern_compile(filter, "filter", STATUS_INVALID, &expression, error);
+    if (status)
+        return status;
     size_t kept = 0, before = set->count;
     for (size_t i = 0; i < before; i++)
         if (!regexec(&expression, set->cells[i].name, 0, NULL, 0))
@@ -270,7 +266,7 @@ static enum status cells_make(struct cell_set *set, const struct plan_request *r
     for (int l = 0; l < 2; l++)
         for (size_t i = 0; i < counts[l] && !status; i++) {
             struct cell cell;
-            status = cell_parse(set->arena, lists[l][i], &cell, error);
+            status = cell_set_parse(set, lists[l][i], &cell, error);
             if (!status)
                 status = cell_set_add(set, &cell, error);
         }
@@ -309,20 +305,6 @@ static void plan_fill(struct plan *plan, const struct plan_settings *settings)
     plan->hash = hash_text(hash, plan->backend);
 }
 
-static enum status backend_check(const char *backend, struct error *error)
-{
-    if (!backend)
-        return STATUS_OK;
-    char names[256] = "";
-    for (const char *const *b = gl_backends; *b; b++) {
-        if (!strcmp(*b, backend))
-            return STATUS_OK;
-        size_t length = strlen(names);
-        snprintf(names + length, sizeof names - length, "%s%s", length ? "|" : "", *b);
-    }
-    return error_set(error, STATUS_INVALID, "backend: '%s' is not one of %s", backend, names);
-}
-
 enum status plan_load(struct arena *arena, const struct plan_request *request, struct plan **plan,
                       struct error *error)
 {
@@ -340,8 +322,8 @@ enum status plan_load(struct arena *arena, const struct plan_request *request, s
     if (!status)
         status = plan_settings_override(&settings, request, error);
     const char *backend = request->backend ? request->backend : file.backend;
-    if (!status)
-        status = backend_check(backend, error);
+    if (!status && backend)
+        status = gl_backend_check(backend, "backend", error);
     struct cell_set set = {.arena = arena};
     if (status)
         return status;

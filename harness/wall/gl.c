@@ -103,18 +103,23 @@ static const struct gl_backend *find_backend(const char *name)
     return NULL;
 }
 
-static enum status open_named(const char *name, const char *who, struct gl **gl,
-                              struct error *error)
+enum status gl_backend_check(const char *name, const char *who, struct error *error)
 {
-    const struct gl_backend *backend = find_backend(name);
-    if (backend)
-        return open_backend(backend, false, gl, error);
+    if (find_backend(name))
+        return STATUS_OK;
     char words[128] = "";
     for (size_t i = 0; gl_backends[i]; i++)
         snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s", i ? "|" : "",
                  gl_backends[i]);
-    return error_set(error, STATUS_UNAVAILABLE, "%s: '%s' is not one of %s", who, name,
+    return error_set(error, STATUS_INVALID, "%s: '%s' is not one of %s", who, name,
                      *words ? words : "none (built without OpenGL)");
+}
+
+static enum status open_named(const char *name, const char *who, struct gl **gl,
+                              struct error *error)
+{
+    enum status status = gl_backend_check(name, who, error);
+    return status ? status : open_backend(find_backend(name), false, gl, error);
 }
 
 enum status gl_context_create(const char *backend, int threads, struct gl **gl, struct error *error)

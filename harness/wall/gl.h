@@ -28,11 +28,13 @@ struct gl {
 
 /* Back ends built in, best first, ends with NULL. */
 extern const char *const gl_backends[];
+/* STATUS_INVALID, named after who, unless it is one of them. */
+enum status gl_backend_check(const char *name, const char *who, struct error *error);
 
 /* backend: a name from gl_backends, or NULL: $TREELINE_GL, else an EGL device that is a GPU, else
  * OSMesa, else EGL surfaceless, else EGL's software device. threads: for llvmpipe (LP_NUM_THREADS;
  * set before the first context of a process), 0: all. STATUS_UNAVAILABLE says what each back end
- * answered. */
+ * answered; a name that is none is STATUS_INVALID. */
 enum status gl_context_create(const char *backend, int threads, struct gl **gl,
                               struct error *error);
 void gl_context_destroy(struct gl *gl);

@@ -289,6 +289,8 @@ enum status mesh_import_assimp(struct arena *arena, const char *path, size_t tri
         return STATUS_INVALID;
     if (path_ends_with(path, ".glb") && glb_check(path, error) != STATUS_OK)
         return STATUS_INVALID;
+    if (path_ends_with(path, ".obj") && obj_check(path, error) != STATUS_OK)
+        return STATUS_INVALID;
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     aiSetImportPropertyInteger(properties, AI_CONFIG_PP_SBP_REMOVE,
                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);

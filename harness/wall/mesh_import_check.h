@@ -15,4 +15,7 @@ enum status ply_check(const char *path, bool *colors_encoded, struct error *erro
  * first. What does not begin as a GLB passes. */
 enum status glb_check(const char *path, struct error *error);
 
+/* STATUS_INVALID for a byte order mark before anything but a comment: the line would be lost. */
+enum status obj_check(const char *path, struct error *error);
+
 #endif
