@@ -4,7 +4,7 @@
 
 struct options {
     int path, add, slices, resolution, cut, filter, samples;
-    float criterion, texel;
+    float criterion, texel, near;
     bool dilate, interpolate, rough, facing, smooth;
 };
 
@@ -24,6 +24,8 @@ static const struct option table[] = {
     OPTION(struct options, texel, 1, 0.1, 16, "px", "largest size of minified texels on the picture"),
     OPTION(struct options, criterion, 2, 0, 64, "px",
            "parallax between neighbouring slices at lod=auto; 0: all slices"),
+    OPTION(struct options, near, 1, 0, 16, "radii",
+           "trees closer to the eye than so many of their radii are drawn by their triangles; none on path=naive"),
     OPTION(struct options, rough, 1, 0, 1, "", "normals that scatter within a texel spread its light"),
     OPTION(struct options, facing, 1, 0, 1, "",
            "leaves show the area that they turn to the eye, not to the front of the slices"),
@@ -67,6 +69,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .dilate = options->dilate,
         .trilinear = fast ? options->filter == 0 : options->add != ADD_BILINEAR,
         .rectangles = fast || options->add == ADD_RECTANGLES,
+        .near_radii = fast ? options->near : 0,
         .each = !fast && options->add != ADD_BATCHES,
         .rough = fast ? options->rough : options->add == ADD_ROUGH,
         .facing = fast ? options->facing : options->add == ADD_FACING,

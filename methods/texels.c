@@ -8,7 +8,7 @@
 
 struct options {
     int path, criterion, slices, resolution, turns, ground, cut, filter, samples;
-    float gap, parallax, texel;
+    float gap, parallax, texel, near;
     bool interpolate, smooth;
 };
 
@@ -33,6 +33,8 @@ static const struct option table[] = {
            "samples along a texel's side when slices are baked"),
     OPTION_WORD(struct options, filter, 1, "trilinear|bilinear", "bilinear: of one mip level a tree"),
     OPTION(struct options, texel, 1, 0.1, 16, "px", "largest size of minified texels on the picture"),
+    OPTION(struct options, near, 1, 0, 16, "radii",
+           "upright trees closer to the eye than so many of their radii are drawn by their triangles; none on path=naive"),
     OPTION(struct options, interpolate, 0, 0, 1, "",
            "up to four times the slices, by interpolation, where the criterion asks for more"),
     OPTION(struct options, smooth, 0, 0, 1, "",
@@ -61,6 +63,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .square = !fast,
         .trilinear = !fast || options->filter == 0,
         .rectangles = fast,
+        .near_radii = fast && options->ground == GROUND_UPRIGHT ? options->near : 0,
         .each = !fast,
         .interpolate = options->interpolate,
         .smooth = options->smooth,

@@ -371,7 +371,8 @@ static void test_shaded_texels__trees_in_each_other_cover_as_in_the_reference(vo
 static void test_shaded_texels__an_eye_in_the_crown_sees_the_crown(void **state)
 {
     struct fixture *f = *state;
-    static const char *const options[] = {"", "path=naive", "interpolate=on,smooth=on"};
+    static const char *const options[] = {"near=0", "path=naive",
+                                          "near=0,interpolate=on,smooth=on"};
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 4; k++) {
             struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);

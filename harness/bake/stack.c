@@ -50,6 +50,8 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
         status = stack_bake(workspace, stack);
     if (status == STATUS_OK)
         status = stack_program(workspace, stack);
+    if (status == STATUS_OK)
+        status = nearby_prepare(workspace, scene, request->near_radii, &stack->nearby);
     if (status != STATUS_OK)
         return status;
     struct cull_bound *bounds = ARENA_ARRAY(arena, struct cull_bound, scene->species_count + 1);
@@ -167,6 +169,7 @@ enum status stack_draw(struct workspace *workspace, struct stack *stack, const s
     backdrop_draw(workspace, stack->backdrop, view);
     gl->Flush(); /* a software GL fills the backdrop while the trees are culled and sorted */
     struct cull_list list = cull_view(stack->cull, view, CULL_BACK_TO_FRONT);
+    nearby_take(stack->nearby, view, CULL_BACK_TO_FRONT, &list);
     struct fill fill = {0, 0};
     use_program(workspace, stack, view);
     for (size_t i = 0; i < list.count; i++) {
@@ -181,11 +184,12 @@ enum status stack_draw(struct workspace *workspace, struct stack *stack, const s
     draw_batch(workspace, stack, fill);
     gl->Disable(GL_BLEND);
     gl->DepthMask(GL_TRUE);
+    status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);
     gl->BindVertexArray(0);
     gl->UseProgram(0);
     for (GLuint i = 0; i < 3; i++) {
         gl->BindTextureUnit(i, 0);
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
     }
-    return gl_check(gl, "stacks", workspace->error);
+    return status == STATUS_OK ? gl_check(gl, "stacks", workspace->error) : status;
 }

@@ -10,6 +10,7 @@
 
 #include "bake/backdrop.h"
 #include "bake/cull.h"
+#include "bake/nearby.h"
 #include "bake/slices.h"
 
 /* How boxes stand on the terrain: upright, as trees do; with the four points of their base on it;
@@ -26,6 +27,7 @@ struct stack_request {
     bool unit;                  /* normals get length 1 after filtering */
     bool trilinear;             /* else the nearest mip level, chosen a tree */
     bool rectangles;            /* quads hold only the occupied rectangle of a slice */
+    float near_radii;           /* nearer trees are drawn by their triangles; 0: none */
     bool each;                  /* one draw a tree */
     int turns; /* light is baked into the colours for trees turned by so many steps; 0: light in
                   every fragment */
@@ -76,6 +78,7 @@ struct stack {
     struct stack_array *arrays;
     struct backdrop *backdrop;
     struct cull *cull;
+    struct nearby *nearby;
     GLuint program, vertices, trees_buffer, quads_buffer;
     GLuint bends_buffer;      /* 0: upright */
     struct stack_bend *bends; /* of stack_bake.h, as trees */
