@@ -125,40 +125,58 @@ static void side_plan(struct arena *arena, struct stack *stack, const struct pyr
     }
 }
 
-/* Room for one slice: values of this mip level and the next, bytes. */
+/* Room for one slice: values of this mip level and the next; bytes of all levels, one behind the
+ * other. normal: NULL where light is baked in. */
 struct page {
     float *texels, *half;
     uint8_t (*color)[4], (*normal)[4], (*spare)[4];
 };
+/* Slices that are encoded side by side. */
+enum { PAGES = 8 };
 
-/* Colours that carry their coverage stay 0 where there is none: only normals are dilated then. */
-static void page_encode(const struct stack_request *request, struct page *page, int width_px,
-                        int height_px)
+static size_t mip_texels(const struct stack_array *array)
 {
-    size_t count = (size_t)width_px * (size_t)height_px;
-    slices_encode(page->texels, count, request->straight, request->unit, page->color, page->normal);
-    if (!request->dilate)
-        return;
-    memcpy(page->spare, page->color, count * sizeof *page->color);
-    slices_dilate(request->straight ? page->color : page->spare, page->normal, width_px, height_px,
-                  2);
+    size_t count = 0;
+    for (int level = 0; level < array->levels; level++)
+        count += (size_t)(array->width_px >> level ? array->width_px >> level : 1) *
+                 (size_t)(array->height_px >> level ? array->height_px >> level : 1);
+    return count;
 }
 
-/* One slice and its mip levels into a layer. */
-static void slice_upload(struct workspace *workspace, const struct stack *stack,
-                         const struct stack_array *array, const struct slices *slices, int slice,
-                         int layer, struct page *page)
+static void pages_open(struct arena *arena, const struct stack_array *array,
+                       struct page pages[PAGES])
 {
-    struct gl *gl = workspace->gl;
+    size_t texels = (size_t)array->width_px * (size_t)array->height_px, all = mip_texels(array);
+    for (int i = 0; i < PAGES; i++)
+        pages[i] = (struct page){
+            ARENA_ARRAY(arena, float, texels *SLICES_FLOATS),
+            ARENA_ARRAY(arena, float, texels *SLICES_FLOATS), arena_alloc(arena, all, 4),
+            array->normal ? arena_alloc(arena, all, 4) : NULL, arena_alloc(arena, texels, 4)};
+}
+
+/* Colours that carry their coverage stay 0 where there is none: only normals are dilated then. */
+static void page_encode(const struct stack_request *request, struct page *page, size_t at,
+                        int width_px, int height_px)
+{
+    size_t count = (size_t)width_px * (size_t)height_px;
+    uint8_t(*color)[4] = page->color + at, (*normal)[4] = page->normal ? page->normal + at : NULL;
+    slices_encode(page->texels, count, request->straight, request->unit, color, normal);
+    if (!request->dilate)
+        return;
+    memcpy(page->spare, color, count * sizeof *color);
+    slices_dilate(request->straight ? color : page->spare, normal, width_px, height_px, 2);
+}
+
+/* One slice and its mip levels. */
+static void slice_encode(const struct stack_request *request, const struct stack_array *array,
+                         const struct slices *slices, int slice, struct page *page)
+{
     int width = array->width_px, height = array->height_px;
+    size_t at = 0;
     slices_expand(slices, 0, slice, page->texels);
     for (int level = 0; level < array->levels; level++) {
-        page_encode(&stack->request, page, width, height);
-        gl->TextureSubImage3D(array->color, level, 0, 0, layer, width, height, 1, GL_RGBA,
-                              GL_UNSIGNED_BYTE, page->color);
-        if (array->normal)
-            gl->TextureSubImage3D(array->normal, level, 0, 0, layer, width, height, 1, GL_RGBA,
-                                  GL_UNSIGNED_BYTE, page->normal);
+        page_encode(request, page, at, width, height);
+        at += (size_t)width * (size_t)height;
         slices_halve(page->texels, width, height, page->half);
         float *swap = page->texels;
         page->texels = page->half;
@@ -168,21 +186,50 @@ static void slice_upload(struct workspace *workspace, const struct stack *stack,
     }
 }
 
+static void slice_upload(struct gl *gl, const struct stack_array *array, int layer,
+                         const struct page *page)
+{
+    int width = array->width_px, height = array->height_px;
+    size_t at = 0;
+    for (int level = 0; level < array->levels; level++) {
+        gl->TextureSubImage3D(array->color, level, 0, 0, layer, width, height, 1, GL_RGBA,
+                              GL_UNSIGNED_BYTE, page->color + at);
+        if (page->normal)
+            gl->TextureSubImage3D(array->normal, level, 0, 0, layer, width, height, 1, GL_RGBA,
+                                  GL_UNSIGNED_BYTE, page->normal + at);
+        at += (size_t)width * (size_t)height;
+        width = width > 1 ? width / 2 : 1;
+        height = height > 1 ? height / 2 : 1;
+    }
+}
+
+/* All slices of a level into its layers. */
+static void level_upload(struct workspace *workspace, const struct stack *stack,
+                         const struct stack_array *array, const struct slices *slices, int layer,
+                         struct page pages[PAGES])
+{
+    for (int first = 0; first < slices->count; first += PAGES) {
+        int count = slices->count - first < PAGES ? slices->count - first : PAGES;
+#pragma omp parallel for num_threads(workspace->threads > 0 ? workspace->threads : 1)              \
+    schedule(dynamic)
+        for (int k = 0; k < count; k++)
+            slice_encode(&stack->request, array, slices, first + k, &pages[k]);
+        for (int k = 0; k < count; k++)
+            slice_upload(workspace->gl, array, layer + first + k, &pages[k]);
+    }
+}
+
 static void side_upload(struct workspace *workspace, const struct stack *stack,
                         const struct pyramid *pyramid, const struct stack_side *side)
 {
     struct arena *scratch = arena_create(0);
     const struct stack_array *array = &stack->arrays[side->array];
-    size_t texels = (size_t)array->width_px * (size_t)array->height_px;
-    struct page page = {ARENA_ARRAY(scratch, float, texels *SLICES_FLOATS),
-                        ARENA_ARRAY(scratch, float, texels *SLICES_FLOATS),
-                        arena_alloc(scratch, texels, 4), arena_alloc(scratch, texels, 4),
-                        arena_alloc(scratch, texels, 4)};
+    struct page pages[PAGES];
+    pages_open(scratch, array, pages);
     for (int l = 0; l < pyramid->levels; l++)
         for (int behind = 0; behind < (l || stack->request.turns > 0 ? 2 : 1); behind++)
-            for (int k = 0; k < side->levels[l].count; k++)
-                slice_upload(workspace, stack, array, pyramid->slices[l][behind], k,
-                             side->levels[l].layer[behind] + k, &page);
+            level_upload(workspace, stack, array, pyramid->slices[l][behind],
+                         side->levels[l].layer[behind], pages);
     arena_destroy(scratch);
 }
 
