@@ -13,7 +13,7 @@ static const struct option table[] = {
                 "how leaves hide and are lit: by the second moments of their normals, or alike on all sides"),
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
     OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
-    OPTION(struct options, bias, 0.5, -4, 4, "", "added to the level of detail that a pixel asks for"),
+    OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
     OPTION(struct options, tile, 16, 8, 64, "px", "side of the tiles that trees are binned to"),
     OPTION_WORD(struct options, isa, 0, "auto|plain|avx2|avx512",
                 "the processor's vectors; another set than it has is drawn with plain C"),

@@ -65,6 +65,32 @@ struct setting {
     enum target_format format;
 };
 
+static inline struct picture picture_draw_cpu(struct arena *arena, const struct scene *scene,
+                                              const struct view *view,
+                                              const struct setting *setting,
+                                              const struct method *method)
+{
+    struct error error;
+    void *state = NULL, *options = arena_alloc(arena, 1, method->options_size);
+    struct picture picture = {view->width_px, view->height_px, NULL, 0, 0, 0};
+    picture.rgba = ARENA_ARRAY(arena, float, 4 * (size_t)(view->width_px * view->height_px));
+    struct target target = {view->width_px, view->height_px, setting->format, 0, 0, 0,
+                            picture.rgba};
+    struct workspace workspace = {.arena = arena,
+                                  .error = &error,
+                                  .effects = setting->effects & method->traits,
+                                  .lod = setting->lod,
+                                  .format = setting->format,
+                                  .threads = 2,
+                                  .seed = 1};
+    options_default(method->options, options);
+    if (options_parse(method->options, setting->options, options, &error) != STATUS_OK ||
+        method->prepare(&workspace, scene, options, &state) != STATUS_OK ||
+        method->draw(&workspace, state, view, &target) != STATUS_OK)
+        fail_msg("%s", error.text);
+    return picture;
+}
+
 /* Prepares and draws one view; fails the test on any error. */
 static inline struct picture picture_draw(struct arena *arena, const struct scene *scene,
                                           const struct view *view, const struct setting *setting)
@@ -76,6 +102,8 @@ static inline struct picture picture_draw(struct arena *arena, const struct scen
     void *state = NULL;
     struct picture picture = {view->width_px, view->height_px, NULL, 0, 0, 0};
     assert_int_equal(method_find(setting->method, &method, &error), STATUS_OK);
+    if (method->traits & TRAIT_CPU)
+        return picture_draw_cpu(arena, scene, view, setting, method);
     if (gl_context_create(setting->backend, 2, &gl, &error) != STATUS_OK)
         fail_msg("%s", error.text);
     struct workspace workspace = {.arena = arena,

@@ -1,4 +1,5 @@
-/* Sky and terrain as drawn, against rays cast one by one at pixel centres. */
+/* Sky and terrain as drawn, with OpenGL and on the CPU, against rays cast one by one at pixel
+ * centres. */
 #include "pictures.h"
 
 enum { WIDTH = 48, HEIGHT = 36 };
@@ -59,12 +60,13 @@ static bool expected(const struct scene *scene, const struct view *view, const s
 }
 
 /* Pixels that differ from the rays; every alpha has to be 0. */
-static size_t differences(struct arena *arena, const struct scene *scene, const float eye[3],
-                          const float target[3], unsigned effects, size_t *terrain_pixels)
+static size_t differences_of(struct arena *arena, const char *method, const struct scene *scene,
+                             const float eye[3], const float target[3], unsigned effects,
+                             size_t *terrain_pixels)
 {
     struct view view;
     view_look_at(scene, eye, target, &view);
-    struct setting setting = {.method = "null", .effects = effects, .format = TARGET_RGBA32F};
+    struct setting setting = {.method = method, .effects = effects, .format = TARGET_RGBA32F};
     struct picture picture = picture_draw(arena, scene, &view, &setting);
     const struct mesh *mesh = terrain_mesh(arena, &scene->terrain);
     size_t wrong = 0;
@@ -84,6 +86,21 @@ static size_t differences(struct arena *arena, const struct scene *scene, const 
             *terrain_pixels += fabs(radiance[0] - sky[0]) > 1e-6;
         }
     return wrong;
+}
+
+static const char *const methods[2] = {"null", "ray-texels"};
+
+/* Of the worse of the two. */
+static size_t differences(struct arena *arena, const struct scene *scene, const float eye[3],
+                          const float target[3], unsigned effects, size_t *terrain_pixels)
+{
+    size_t worst = 0;
+    for (int i = 0; i < 2; i++) {
+        size_t wrong =
+            differences_of(arena, methods[i], scene, eye, target, effects, terrain_pixels);
+        worst = wrong > worst ? wrong : worst;
+    }
+    return worst;
 }
 
 static void test_backdrop__the_sky_is_sky_radiance_at_every_pixel_centre(void **state)
@@ -158,13 +175,14 @@ static double plane_share(const struct scene *scene, const struct view *view, in
 
 /* Pixels of a plane's picture whose mixture of terrain and sky is not by area; how many are mixed.
  */
-static size_t unlike_area(struct arena *arena, const struct scene *scene, const float eye[3],
-                          const float target[3], double tolerance, size_t *mixed)
+static size_t unlike_area_of(struct arena *arena, const char *method, const struct scene *scene,
+                             const float eye[3], const float target[3], double tolerance,
+                             size_t *mixed)
 {
     struct view view;
     view_look_at(scene, eye, target, &view);
     struct setting setting = {
-        .method = "null", .effects = EFFECT_AMBIENT, .format = TARGET_RGBA32F};
+        .method = method, .effects = EFFECT_AMBIENT, .format = TARGET_RGBA32F};
     struct picture picture = picture_draw(arena, scene, &view, &setting);
     size_t wrong = 0;
     *mixed = 0;
@@ -183,6 +201,18 @@ static size_t unlike_area(struct arena *arena, const struct scene *scene, const 
             assert_true(pixel[3] == 0);
         }
     return wrong;
+}
+
+/* Of the worse of the two. */
+static size_t unlike_area(struct arena *arena, const struct scene *scene, const float eye[3],
+                          const float target[3], double tolerance, size_t *mixed)
+{
+    size_t worst = 0;
+    for (int i = 0; i < 2; i++) {
+        size_t wrong = unlike_area_of(arena, methods[i], scene, eye, target, tolerance, mixed);
+        worst = wrong > worst ? wrong : worst;
+    }
+    return worst;
 }
 
 static void test_backdrop__the_horizon_of_a_plane_is_mixed_by_area(void **state)

@@ -19,7 +19,45 @@ struct hills {
     uint32_t quads_x, quads_z, chunks_x, chunks_z;
     float (*screen)[3]; /* of each vertex: x, y in px, depth along the view */
     struct bounds *chunks;
+    float (*spheres)[4]; /* of each chunk: centre, radius, m */
 };
+
+static uint32_t end_of(uint32_t chunk, uint32_t quads)
+{
+    uint32_t end = (chunk + 1) * CHUNK_SIDE;
+    return end < quads ? end : quads;
+}
+
+/* The vertices of a chunk; returns how many. */
+enum { CHUNK_CORNERS = (CHUNK_SIDE + 1) * (CHUNK_SIDE + 1) };
+static size_t chunk_corners(const struct hills *hills, size_t chunk,
+                            uint32_t corners[CHUNK_CORNERS])
+{
+    uint32_t cx = (uint32_t)(chunk % hills->chunks_x), cz = (uint32_t)(chunk / hills->chunks_x);
+    size_t count = 0;
+    for (uint32_t z = cz * CHUNK_SIDE; z <= end_of(cz, hills->quads_z); z++)
+        for (uint32_t x = cx * CHUNK_SIDE; x <= end_of(cx, hills->quads_x); x++)
+            corners[count++] = z * (hills->quads_x + 1) + x;
+    return count;
+}
+
+static void chunk_sphere(const struct hills *hills, size_t chunk, float sphere[4])
+{
+    uint32_t corners[CHUNK_CORNERS];
+    size_t count = chunk_corners(hills, chunk, corners);
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++) {
+            low[i] = fminf(low[i], hills->mesh->positions[corners[k]][i]);
+            high[i] = fmaxf(high[i], hills->mesh->positions[corners[k]][i]);
+        }
+    float square = 0;
+    for (int i = 0; i < 3; i++) {
+        sphere[i] = 0.5f * (low[i] + high[i]);
+        square += 0.25f * (high[i] - low[i]) * (high[i] - low[i]);
+    }
+    sphere[3] = 1.0001f * sqrtf(square);
+}
 
 struct hills *hills_prepare(struct arena *arena, const struct terrain *terrain)
 {
@@ -31,45 +69,43 @@ struct hills *hills_prepare(struct arena *arena, const struct terrain *terrain)
     hills->chunks_z = (hills->quads_z + CHUNK_SIDE - 1) / CHUNK_SIDE;
     hills->screen = arena_alloc(arena, hills->mesh->vertices_count, sizeof *hills->screen);
     hills->chunks = ARENA_ARRAY(arena, struct bounds, (size_t)hills->chunks_x * hills->chunks_z);
+    hills->spheres =
+        arena_alloc(arena, (size_t)hills->chunks_x * hills->chunks_z, sizeof *hills->spheres);
+    for (size_t chunk = 0; chunk < (size_t)hills->chunks_x * hills->chunks_z; chunk++)
+        chunk_sphere(hills, chunk, hills->spheres[chunk]);
     return hills;
 }
 
+static const struct bounds nowhere = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
 static const struct bounds everywhere = {{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
 
 /* of corners on the screen; all of it when one is not well before the eye */
-static struct bounds bounds_of(const float (*screen)[3], const uint32_t *corners, size_t count,
-                               float near_m)
+static inline struct bounds bounds_of(const float (*screen)[3], const uint32_t *corners,
+                                      size_t count, float near_m)
 {
-    struct bounds bounds = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    struct bounds bounds = nowhere;
     size_t behind = 0;
     for (size_t k = 0; k < count; k++) {
         const float *at = screen[corners[k]];
         behind += at[2] < near_m;
         for (int i = 0; i < 2; i++) {
-            bounds.low[i] = fminf(bounds.low[i], at[i]);
-            bounds.high[i] = fmaxf(bounds.high[i], at[i]);
+            bounds.low[i] = bounds.low[i] < at[i] ? bounds.low[i] : at[i];
+            bounds.high[i] = bounds.high[i] > at[i] ? bounds.high[i] : at[i];
         }
     }
     if (behind == count)
-        return (struct bounds){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+        return nowhere;
     return behind ? everywhere : bounds;
 }
 
-static uint32_t end_of(uint32_t chunk, uint32_t quads)
+/* Spheres outside the frustum would cover all of the screen where they reach behind the eye. */
+static struct bounds chunk_bounds(const struct hills *hills, size_t chunk, const struct view *view)
 {
-    uint32_t end = (chunk + 1) * CHUNK_SIDE;
-    return end < quads ? end : quads;
-}
-
-static struct bounds chunk_bounds(const struct hills *hills, size_t chunk, float near_m)
-{
-    uint32_t corners[(CHUNK_SIDE + 1) * (CHUNK_SIDE + 1)];
-    uint32_t cx = (uint32_t)(chunk % hills->chunks_x), cz = (uint32_t)(chunk / hills->chunks_x);
-    size_t count = 0;
-    for (uint32_t z = cz * CHUNK_SIDE; z <= end_of(cz, hills->quads_z); z++)
-        for (uint32_t x = cx * CHUNK_SIDE; x <= end_of(cx, hills->quads_x); x++)
-            corners[count++] = z * (hills->quads_x + 1) + x;
-    return bounds_of((const float(*)[3])hills->screen, corners, count, near_m);
+    uint32_t corners[CHUNK_CORNERS];
+    if (!view_sees_sphere(view, hills->spheres[chunk], hills->spheres[chunk][3]))
+        return nowhere;
+    size_t count = chunk_corners(hills, chunk, corners);
+    return bounds_of((const float(*)[3])hills->screen, corners, count, view->near_m);
 }
 
 void hills_begin(struct hills *hills, const struct view *view, int threads)
@@ -95,22 +131,25 @@ void hills_begin(struct hills *hills, const struct view *view, int threads)
         }
 #pragma omp for schedule(static)
         for (size_t chunk = 0; chunk < chunks; chunk++)
-            hills->chunks[chunk] = chunk_bounds(hills, chunk, view->near_m);
+            hills->chunks[chunk] = chunk_bounds(hills, chunk, view);
     }
 }
 
 /* The pixels of a tile whose centres are within bounds, and a little more; false when none is. */
-static bool pixels_of(const struct bounds *bounds, const struct backdrop_tile *tile, int low[2],
-                      int high[2])
+static inline bool pixels_of(const struct bounds *bounds, const struct backdrop_tile *tile,
+                             int low[2], int high[2])
 {
     const int first[2] = {tile->x_px, tile->y_px}, size[2] = {tile->width_px, tile->height_px};
+    float from[2], to[2];
     for (int i = 0; i < 2; i++) {
-        float from = floorf(bounds->low[i] - 0.51f) - (float)first[i];
-        float to = ceilf(bounds->high[i] - 0.49f) - (float)first[i];
-        if (!(from < (float)size[i]) || !(to >= 0))
+        from[i] = bounds->low[i] - (float)first[i] - 0.51f;
+        to[i] = bounds->high[i] - (float)first[i] - 0.49f;
+        if (!(from[i] < (float)size[i]) || !(to[i] > -1))
             return false;
-        low[i] = from > 0 ? (int)from : 0;
-        high[i] = to < (float)(size[i] - 1) ? (int)to : size[i] - 1;
+    }
+    for (int i = 0; i < 2; i++) {
+        low[i] = from[i] > 0 ? (int)from[i] : 0;
+        high[i] = to[i] < (float)(size[i] - 1) ? (int)to[i] + 1 : size[i] - 1;
     }
     return true;
 }

@@ -12,28 +12,25 @@ struct march {
     const struct scene *scene;
     struct march_options options;
     march_block *block;
-    const struct voxels **volumes; /* one a species */
-    struct march_tree *trees;      /* one an instance */
+    struct march_species *species;
+    struct march_tree *trees; /* one an instance */
     struct cull *cull;
     struct backdrop_cpu *backdrop;
     struct march_seen *seen; /* of the trees in view, in their order */
+    size_t fars_count;       /* turns of species */
+    struct march_far *fars;  /* of a tile's direction, for each thread */
     size_t tiles_capacity, entries_capacity;
     uint32_t *tile_first; /* threads + 1 runs of tiles + 1 */
     uint32_t *entries;    /* numbers of the list, tile by tile */
 };
 
-static enum status isa_choose(struct march *march, const char *name, struct error *error)
+static march_block *block_named(const char *name)
 {
     struct march_isa isas[4];
-    size_t count = march_isas(isas);
-    march->block = isas[count - 1].block;
+    size_t count = march_isas(isas), chosen = name ? 0 : count - 1;
     for (size_t i = 0; i < count && name; i++)
-        if (!strcmp(isas[i].name, name)) {
-            march->block = isas[i].block;
-            return STATUS_OK;
-        }
-    return name ? error_set(error, STATUS_UNAVAILABLE, "isa: this processor has no %s", name)
-                : STATUS_OK;
+        chosen = strcmp(isas[i].name, name) ? chosen : i;
+    return isas[chosen].block;
 }
 
 static void trees_fill(struct march *march, const struct scene *scene)
@@ -46,7 +43,30 @@ static void trees_fill(struct march *march, const struct scene *scene)
         tree->sine = sinf(instance->rotation_rad);
         tree->scale = instance->scale;
         tree->species = instance->species;
+        float turns = instance->rotation_rad / 6.2831853f;
+        tree->turn = (uint32_t)((turns - floorf(turns)) * MARCH_TURNS + 0.5f) % MARCH_TURNS;
     }
+}
+
+static enum status species_fill(struct workspace *workspace, struct plant *plant, int resolution,
+                                struct march_species *species, struct cull_bound *bound)
+{
+    const struct mesh *mesh;
+    enum status status =
+        voxels_of_plant(workspace->arena, plant, resolution, &species->voxels, workspace->error);
+    if (!status)
+        status = plant_mesh(plant, &mesh, workspace->error);
+    if (status)
+        return status;
+    *bound = cull_bound_of(mesh);
+    float square = 0;
+    for (int i = 0; i < 3; i++) {
+        float half = 0.5f * (mesh->maximum_m[i] - mesh->minimum_m[i]);
+        species->center_m[i] = mesh->minimum_m[i] + half;
+        square += half * half;
+    }
+    species->radius_m = sqrtf(square);
+    return STATUS_OK;
 }
 
 enum status march_prepare(struct workspace *workspace, const struct scene *scene,
@@ -55,23 +75,19 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
     struct march *march = *result = ARENA_NEW(workspace->arena, struct march);
     march->scene = scene;
     march->options = *options;
-    enum status status = isa_choose(march, options->isa, workspace->error);
-    if (!status)
-        status = backdrop_cpu_prepare(workspace, scene, &march->backdrop);
-    march->volumes = ARENA_ARRAY(workspace->arena, const struct voxels *, scene->species_count);
+    march->block = block_named(options->isa);
+    enum status status = backdrop_cpu_prepare(workspace, scene, &march->backdrop);
+    march->species = ARENA_ARRAY(workspace->arena, struct march_species, scene->species_count);
     struct cull_bound *bounds =
         ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count);
-    for (size_t i = 0; i < scene->species_count && !status; i++) {
-        const struct mesh *mesh;
-        status = voxels_of_plant(workspace->arena, scene->species[i].plant, options->resolution,
-                                 &march->volumes[i], workspace->error);
-        if (!status)
-            status = plant_mesh(scene->species[i].plant, &mesh, workspace->error);
-        if (!status)
-            bounds[i] = cull_bound_of(mesh);
-    }
+    for (size_t i = 0; i < scene->species_count && !status; i++)
+        status = species_fill(workspace, scene->species[i].plant, options->resolution,
+                              &march->species[i], &bounds[i]);
     if (status)
         return status;
+    march->fars_count = MARCH_TURNS * scene->species_count;
+    march->fars = ARENA_ARRAY(workspace->arena, struct march_far,
+                              march->fars_count * (size_t)workspace->threads);
     march->trees = ARENA_ARRAY(workspace->arena, struct march_tree, scene->instances_count);
     march->seen = ARENA_ARRAY(workspace->arena, struct march_seen, scene->instances_count);
     trees_fill(march, scene);
@@ -140,8 +156,7 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
         size_t end = list->count * ((size_t)thread + 1) / (size_t)threads;
         for (size_t k = list->count * (size_t)thread / (size_t)threads; k < end; k++) {
             const struct march_tree *tree = &march->trees[list->instances[k]];
-            march->seen[k] =
-                march_see(picture, tree, march->volumes[tree->species], list->depths_m[k]);
+            march->seen[k] = march_see(picture, tree, list->depths_m[k]);
             tree_bin(tiles, &march->seen[k], march->tile_first + run * ((size_t)thread + 1), NULL,
                      0);
         }
@@ -167,6 +182,7 @@ struct canvas {
     float depths_m[TILE_MAX * TILE_MAX];
     float rgb[TILE_MAX * TILE_MAX][3];
     struct backdrop_tile tile;
+    struct march_far *fars; /* for the tile's direction, made when first needed */
     int across, blocks_count, open_count;
 };
 
@@ -199,6 +215,8 @@ static void canvas_begin(struct canvas *canvas, const struct march *march,
         }
     for (int block = 0; block < canvas->blocks_count; block++)
         canvas->open[block] = true;
+    for (size_t i = 0; i < march->fars_count; i++)
+        canvas->fars[i].made = false;
 }
 
 /* Pixels outside the picture were never opened. */
@@ -253,14 +271,12 @@ static void canvas_march(struct canvas *canvas, const struct march *march,
                          const struct march_view *picture, const struct march_tree *tree,
                          const struct march_seen *seen)
 {
-    const struct voxels *voxels = march->volumes[tree->species];
-    const float voxel_m = voxels->levels[seen->level].voxel_m;
+    const float voxel_m = march->species[tree->species].voxels->levels[seen->level].voxel_m;
     const float half = 0.5f * (float)(canvas->tile.stride - 1);
     const int from[2] = {canvas->tile.x_px, canvas->tile.y_px};
     int low[2], high[2];
     struct march_job job;
-    march_job_fill(picture, tree, voxels, seen->level, (float)from[0] + half, (float)from[1] + half,
-                   &job);
+    march_job_fill(picture, tree, seen->level, (float)from[0] + half, (float)from[1] + half, &job);
     for (int i = 0; i < 2; i++) {
         low[i] = block_clamp((seen->low[i] - from[i]) / MARCH_BLOCK, canvas->across);
         high[i] = block_clamp((seen->high[i] - from[i]) / MARCH_BLOCK, canvas->across);
@@ -282,6 +298,8 @@ static void tile_draw(const struct march *march, const struct march_view *pictur
                       struct canvas *canvas, float *pixels)
 {
     canvas_begin(canvas, march, tiles, picture->view, tile);
+    float half = 0.5f * (float)(canvas->tile.stride - 1);
+    float middle_x = (float)canvas->tile.x_px + half, middle_y = (float)canvas->tile.y_px + half;
     for (uint32_t at = march->tile_first[tile];
          at < march->tile_first[tile + 1] && canvas->open_count; at++) {
         uint32_t k = march->entries[at];
@@ -290,8 +308,12 @@ static void tile_draw(const struct march *march, const struct march_view *pictur
             canvas_march(canvas, march, picture, tree, &march->seen[k]);
             continue;
         }
+        struct march_far *far = &canvas->fars[MARCH_TURNS * tree->species + tree->turn];
         struct march_splat splat;
-        march_splat_of(picture, tree, march->volumes[tree->species], march->block, &splat);
+        if (!far->made)
+            march_far_fill(picture, tree->species, tree->turn, middle_x, middle_y, march->block,
+                           far);
+        march_splat_of(picture, tree, far, &splat);
         canvas_splat(canvas, &splat);
     }
     canvas_end(canvas, march->options.stop, picture->view, pixels);
@@ -307,6 +329,7 @@ enum status march_draw(struct workspace *workspace, struct march *march, const s
         .focal_px = cull_focal_px(view),
         .effects = workspace->effects,
         .options = march->options,
+        .species = march->species,
     };
     const struct tiles tiles = tiles_of(march, view);
     backdrop_cpu_begin(workspace, march->backdrop, view);
@@ -315,6 +338,7 @@ enum status march_draw(struct workspace *workspace, struct march *march, const s
 #pragma omp parallel num_threads(workspace->threads)
     {
         struct canvas canvas;
+        canvas.fars = march->fars + march->fars_count * (size_t)omp_get_thread_num();
 #pragma omp for schedule(dynamic, 1)
         for (size_t tile = 0; tile < tiles.count; tile++)
             tile_draw(march, &picture, &tiles, &list, tile, &canvas, target->pixels);

@@ -20,7 +20,7 @@ struct march_options {
     float step;      /* voxels */
     float bias;      /* added to the level of detail */
     int tile_px;     /* side of a tile */
-    const char *isa; /* a name of march_isas(); NULL: the last */
+    const char *isa; /* a name of march_isas(), or plain C for what is not there; NULL: the last */
 };
 
 enum status march_prepare(struct workspace *workspace, const struct scene *scene,

@@ -55,49 +55,73 @@ static uint32_t level_of(const struct march_view *picture, const struct march_tr
 
 static int16_t pixel_of(float at_px, int size_px)
 {
-    return (int16_t)fminf(fmaxf(at_px, -2), (float)size_px + 1);
+    return (int16_t)(at_px > -2 ? at_px < (float)size_px ? at_px : (float)size_px + 1 : -2);
+}
+
+static void seen_between(struct march_seen *seen, int axis, float first, float last, int size_px)
+{
+    seen->low[axis] = pixel_of(first > 0 ? first : 0, size_px);
+    seen->high[axis] = pixel_of(last < (float)(size_px - 1) ? last : (float)(size_px - 1), size_px);
+}
+
+/* The tree's middle: x and y in pixels from the first pixel's centre, and its depth. */
+static void middle_of(const struct march_view *picture, const struct march_tree *tree,
+                      float middle[3])
+{
+    const struct view *view = picture->view;
+    const float *center = picture->species[tree->species].center_m;
+    float offset[3] = {center[0] * tree->cosine + center[2] * tree->sine, center[1],
+                       center[2] * tree->cosine - center[0] * tree->sine};
+    for (int i = 0; i < 3; i++)
+        offset[i] = tree->position_m[i] + tree->scale * offset[i] - view->eye_m[i];
+    middle[2] = dot3(offset, view->forward);
+    float scale = picture->focal_px / middle[2];
+    middle[0] = 0.5f * (float)(view->width_px - 1) + scale * dot3(offset, view->right);
+    middle[1] = 0.5f * (float)(view->height_px - 1) - scale * dot3(offset, view->up);
+}
+
+static struct march_seen see_small(const struct march_view *picture, const struct march_tree *tree)
+{
+    struct march_seen seen = {.level = MARCH_SPLAT};
+    float middle[3];
+    middle_of(picture, tree, middle);
+    float x = floorf(middle[0]), y = floorf(middle[1]);
+    seen_between(&seen, 0, x, x + 1, picture->view->width_px);
+    seen_between(&seen, 1, y, y + 1, picture->view->height_px);
+    return seen;
 }
 
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
-                            const struct voxels *voxels, float depth_m)
+                            float depth_m)
 {
+    static const float small_px = 0.8f;
+    const struct march_species *species = &picture->species[tree->species];
     const struct view *view = picture->view;
-    const int size_px[2] = {view->width_px, view->height_px};
+    float radius_m = tree->scale * species->radius_m;
+    if (depth_m - radius_m > view->near_m && radius_m * picture->focal_px < small_px * depth_m)
+        return see_small(picture, tree);
     const float down[3] = {-view->up[0], -view->up[1], -view->up[2]};
-    const float *axes[2] = {view->right, down};
     struct march_seen seen = {{0, 0}, {-1, -1}, 0};
-    seen.level = (uint8_t)level_of(picture, tree, voxels, depth_m);
-    struct box box = box_of(picture, tree, voxels, seen.level);
-    float middle = dot3(box.middle_m, view->forward), reach = 0, low[2], high[2];
+    seen.level = (uint8_t)level_of(picture, tree, species->voxels, depth_m);
+    struct box box = box_of(picture, tree, species->voxels, seen.level);
+    float middle = dot3(box.middle_m, view->forward), reach = 0;
     for (int k = 0; k < 3; k++)
         reach += fabsf(dot3(box.half_m[k], view->forward));
     if (middle + reach < view->near_m)
         return seen;
-    bool small = true;
     for (int i = 0; i < 2; i++) {
-        low[i] = 0;
-        high[i] = (float)size_px[i];
-        small &= middle - reach > view->near_m;
-        if (middle - reach <= view->near_m)
+        const float *axis = i ? down : view->right;
+        int size_px = i ? view->height_px : view->width_px;
+        if (middle - reach <= view->near_m) {
+            seen_between(&seen, i, 0, (float)size_px, size_px);
             continue;
-        float slope = dot3(box.middle_m, axes[i]) / middle, spread = 0;
+        }
+        float slope = dot3(box.middle_m, axis) / middle, spread = 0;
         for (int k = 0; k < 3; k++)
-            spread +=
-                fabsf(dot3(box.half_m[k], axes[i]) - slope * dot3(box.half_m[k], view->forward));
+            spread += fabsf(dot3(box.half_m[k], axis) - slope * dot3(box.half_m[k], view->forward));
         spread *= picture->focal_px / (middle - reach);
-        float at = 0.5f * (float)size_px[i] + picture->focal_px * slope;
-        low[i] = at - spread;
-        high[i] = at + spread;
-        small &= spread < 0.75f;
-    }
-    if (small)
-        seen.level = MARCH_SPLAT;
-    for (int i = 0; i < 2; i++) {
-        float at = 0.5f * (low[i] + high[i]);
-        float first = small ? floorf(at - 0.5f) : ceilf(low[i] - 0.5f);
-        float last = small ? first + 1 : floorf(high[i] - 0.5f);
-        seen.low[i] = pixel_of(fmaxf(first, 0), size_px[i]);
-        seen.high[i] = pixel_of(fminf(last, (float)(size_px[i] - 1)), size_px[i]);
+        float at = 0.5f * (float)size_px + picture->focal_px * slope - 0.5f;
+        seen_between(&seen, i, ceilf(at - spread), floorf(at + spread), size_px);
     }
     return seen;
 }
@@ -161,10 +185,10 @@ void march_job_aim(const struct march_view *picture, const struct march_tree *tr
     to_plant(tree, world, 1 / (tree->scale * voxel_m), job->first);
 }
 
-void march_job_fill(const struct march_view *picture, const struct march_tree *tree,
-                    const struct voxels *voxels, uint32_t level, float x_px, float y_px,
-                    struct march_job *job)
+void march_job_fill(const struct march_view *picture, const struct march_tree *tree, uint32_t level,
+                    float x_px, float y_px, struct march_job *job)
 {
+    const struct voxels *voxels = picture->species[tree->species].voxels;
     const struct voxels_level *grid = &voxels->levels[level];
     float per_m = 1 / (tree->scale * grid->voxel_m), offset[3], toward_eye[3];
     struct box box = box_of(picture, tree, voxels, level);
@@ -192,35 +216,63 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
 
 /* The coarsest level is one voxel; a ray along an axis through its middle is covered by the share
  * that rays along this axis are, and its face is as large as a voxel's: so this much of the screen
- * is covered, and between the axes what the voxel's shape says. */
-void march_splat_of(const struct march_view *picture, const struct march_tree *tree,
-                    const struct voxels *voxels, march_block *block, struct march_splat *splat)
+ * is covered, and between the axes what the voxel's shape says. Fog is left to each tree. */
+void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
+                    float y_px, march_block *block, struct march_far *far)
 {
-    const struct view *view = picture->view;
+    const float angle = 6.2831853f * (float)turn / MARCH_TURNS;
+    const struct voxels *voxels = picture->species[species].voxels;
     const uint32_t last = voxels->levels_count - 1;
-    struct box box = box_of(picture, tree, voxels, last);
+    const float side_m = voxels->levels[last].voxel_m, depth_m = 1000 * side_m;
+    struct march_view clear = *picture;
+    struct march_tree tree = {
+        .cosine = cosf(angle), .sine = sinf(angle), .scale = 1, .species = species};
     struct march_job job;
     struct march_rays rays = {.left = {0}};
-    float depth = dot3(box.middle_m, view->forward);
-    float x = 0.5f * (float)view->width_px +
-              picture->focal_px * dot3(box.middle_m, view->right) / depth - 0.5f;
-    float y = 0.5f * (float)view->height_px -
-              picture->focal_px * dot3(box.middle_m, view->up) / depth - 0.5f;
-    march_job_fill(picture, tree, voxels, last, x, y, &job);
-    job.near_m = depth - 0.5f / job.speed;
+    clear.effects &= ~(unsigned)EFFECT_FOG;
+    for (int i = 0; i < 3; i++) /* its middle stands on the ray */
+        tree.position_m[i] = picture->view->eye_m[i];
+    struct box box = box_of(picture, &tree, voxels, last);
+    for (int i = 0; i < 3; i++)
+        tree.position_m[i] += depth_m * (picture->rays.first[i] + x_px * picture->rays.right[i] +
+                                         y_px * picture->rays.down[i]) -
+                              box.middle_m[i];
+    march_job_fill(&clear, &tree, last, x_px, y_px, &job);
+    job.near_m = depth_m - 0.5f / job.speed;
     job.step = 1;
     rays.left[0] = 1;
-    rays.depths_m[0] = depth + 0.5f / job.speed;
+    rays.depths_m[0] = depth_m + 0.5f / job.speed;
     block(&job, &rays);
-    float covered = 1 - rays.left[0];
-    float side_px = tree->scale * voxels->levels[last].voxel_m * picture->focal_px / depth;
-    float right = x - floorf(x), low = y - floorf(y);
-    splat->x_px = (int)floorf(x);
-    splat->y_px = (int)floorf(y);
-    splat->depth_m = depth;
+    far->made = true;
+    far->cover = 1 - rays.left[0];
     for (int c = 0; c < 3; c++)
-        splat->rgb[c] = covered > 0 ? rays.rgb[c][0] / covered : 0;
+        far->rgb[c] = far->cover > 0 ? rays.rgb[c][0] / far->cover : 0;
+}
+
+void march_splat_of(const struct march_view *picture, const struct march_tree *tree,
+                    const struct march_far *far, struct march_splat *splat)
+{
+    const struct voxels *voxels = picture->species[tree->species].voxels;
+    float middle[3], clear = 1;
+    middle_of(picture, tree, middle);
+    float left = floorf(middle[0]), top = floorf(middle[1]);
+    float right = middle[0] - left, low = middle[1] - top;
+    float side_px = tree->scale * voxels->levels[voxels->levels_count - 1].voxel_m *
+                    picture->focal_px / middle[2];
+    float area = far->cover * side_px * side_px;
+    const float shares[4] = {(1 - right) * (1 - low), right * (1 - low), (1 - right) * low,
+                             right * low};
+    splat->x_px = (int)left;
+    splat->y_px = (int)top;
+    splat->depth_m = middle[2];
+    if (picture->effects & EFFECT_FOG && picture->scene->fog.density_per_m > 0) {
+        float x = (middle[0] - 0.5f * (float)picture->view->width_px) / picture->focal_px;
+        float y = (middle[1] - 0.5f * (float)picture->view->height_px) / picture->focal_px;
+        clear = expf(-picture->scene->fog.density_per_m * middle[2] * sqrtf(1 + x * x + y * y));
+    }
+    for (int c = 0; c < 3; c++)
+        splat->rgb[c] =
+            picture->scene->fog.color[c] + clear * (far->rgb[c] - picture->scene->fog.color[c]);
     for (int k = 0; k < 4; k++)
-        splat->shares[k] = fminf(1, covered * side_px * side_px * (k & 1 ? right : 1 - right) *
-                                        (k >> 1 ? low : 1 - low));
+        splat->shares[k] = area * shares[k] < 1 ? area * shares[k] : 1;
 }

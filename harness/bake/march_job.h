@@ -9,6 +9,15 @@
 struct march_tree {
     float position_m[3], cosine, sine, scale;
     uint32_t species;
+    uint32_t turn; /* rotation, in MARCH_TURNS steps */
+};
+enum { MARCH_TURNS = 32 };
+
+/* A species as the march has it. */
+struct march_species {
+    const struct voxels *voxels;
+    float center_m[3]; /* of the finest level's box, in the plant's axes */
+    float radius_m;    /* of a sphere around it that holds the plant */
 };
 
 /* Constants of a picture. */
@@ -19,6 +28,7 @@ struct march_view {
     float focal_px;
     unsigned effects;
     struct march_options options;
+    const struct march_species *species;
 };
 
 enum { MARCH_SPLAT = 255 };
@@ -30,23 +40,30 @@ struct march_seen {
     uint8_t level;
 };
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
-                            const struct voxels *voxels, float depth_m);
+                            float depth_m);
 
 /* Everything but the block's own first ray, for pixels around (x, y). */
-void march_job_fill(const struct march_view *picture, const struct march_tree *tree,
-                    const struct voxels *voxels, uint32_t level, float x_px, float y_px,
-                    struct march_job *job);
+void march_job_fill(const struct march_view *picture, const struct march_tree *tree, uint32_t level,
+                    float x_px, float y_px, struct march_job *job);
 /* The first ray for the block whose upper left pixel is (x, y). */
 void march_job_aim(const struct march_view *picture, const struct march_tree *tree, float x_px,
                    float y_px, float voxel_m, struct march_job *job);
 
-/* A tree smaller than a pixel: what of its four pixels it covers, and with which radiance. */
+/* How a species, turned by a step, looks from far away in a direction. */
+struct march_far {
+    bool made;
+    float cover, rgb[3]; /* share of a square of the coarsest voxel's side; radiance */
+};
+void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
+                    float y_px, march_block *block, struct march_far *far);
+
+/* A tree that is hardly larger than a pixel: the shares of four pixels that it covers. */
 struct march_splat {
     int x_px, y_px; /* the upper left one */
     float depth_m, rgb[3];
     float shares[4]; /* upper left, upper right, lower left, lower right */
 };
 void march_splat_of(const struct march_view *picture, const struct march_tree *tree,
-                    const struct voxels *voxels, march_block *block, struct march_splat *splat);
+                    const struct march_far *far, struct march_splat *splat);
 
 #endif

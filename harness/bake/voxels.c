@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VOXELS_VERSION = 2 };
+enum { VOXELS_VERSION = 6 };
 
 /* Two-pass chamfer with unit weights is exact for the chessboard distance (Borgefors 1986). */
 static void distance_sweep(const uint32_t size[3], uint32_t *cells, bool back)
@@ -91,18 +91,12 @@ struct voxel_optics voxel_unpack(const struct voxels *voxels, uint32_t index)
     return optics;
 }
 
-/* A ray of 64 that meets everything says no more than that less than one passes. */
-static float depth_of(float cover)
-{
-    return -logf(fmaxf(1 - cover, 0.5f / (VOXEL_RAYS * VOXEL_RAYS)));
-}
-
-static struct voxel_optics optics_of(const struct voxel_mass *mass)
+static struct voxel_optics optics_of(const struct voxel_mass *mass, const float powers[3])
 {
     struct voxel_optics optics = {.bark = mass->bark / mass->area};
     float depth[3], trace = 0, facing = 0, even = 0;
     for (int i = 0; i < 3; i++) {
-        depth[i] = depth_of(mass->cover[i]);
+        depth[i] = voxel_depth(mass->cover[i], powers[i]);
         trace += depth[i] * depth[i];
         facing += mass->facing[i];
         even += sqrtf(mass->moments[i] * mass->area);
@@ -124,8 +118,8 @@ static struct voxel_optics optics_of(const struct voxel_mass *mass)
 }
 
 /* Cells and voxels of a level; the grid's cells are used up. */
-static void level_store(struct voxel_grid *grid, float voxel_m, struct voxels *voxels,
-                        struct voxels_level *level)
+static void level_store(struct voxel_grid *grid, const float powers[3], float voxel_m,
+                        struct voxels *voxels, struct voxels_level *level)
 {
     size_t cells = (size_t)grid->size[0] * grid->size[1] * grid->size[2];
     memcpy(level->size, grid->size, sizeof level->size);
@@ -136,7 +130,7 @@ static void level_store(struct voxel_grid *grid, float voxel_m, struct voxels *v
     memcpy(level->cells, grid->cells, cells * sizeof *level->cells);
     voxel_distances(level->size, level->cells);
     for (size_t i = 0; i < grid->count; i++) {
-        struct voxel_optics optics = optics_of(&grid->masses[i]);
+        struct voxel_optics optics = optics_of(&grid->masses[i], powers);
         voxels->voxels[voxels->voxels_count++] = voxel_pack(&optics, voxels->albedo);
     }
 }
@@ -224,9 +218,16 @@ static enum status voxels_build(struct arena *arena, const struct mesh *mesh, in
         *stored = head;
         stored_open(stored, *size, &unused);
         stored->voxels.voxels_count = 0;
-        for (uint32_t i = 0; i < head.voxels.levels_count; i++)
-            level_store(&grids[i], voxel_m * (float)(1u << i), &stored->voxels,
+        double areas[3];
+        voxel_grid_hidden(passing, &grids[0], areas);
+        for (uint32_t i = 0; i < head.voxels.levels_count; i++) {
+            float powers[3];
+            voxel_grid_temper(passing, &grids[i], areas, powers);
+            level_store(&grids[i], powers, voxel_m * (float)(1u << i), &stored->voxels,
                         &stored->voxels.levels[i]);
+            for (int axis = 0; axis < 3; axis++)
+                areas[axis] /= 4;
+        }
     }
     arena_destroy(passing);
     return status;

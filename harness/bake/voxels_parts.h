@@ -29,6 +29,17 @@ enum status voxel_grid_fill(struct arena *arena, const struct mesh *mesh, const 
 /* Half as fine. */
 void voxel_grid_halve(struct arena *arena, const struct voxel_grid *fine,
                       struct voxel_grid *coarse);
+/* Optical depth of a voxel of which rays meet a share; where all of 64 rays meet something, no more
+ * is known than that less than one passes. Times the cover to a power: below. */
+float voxel_depth(float cover, float power);
+/* The area that a plant hides along each axis, in its finest voxels' faces: of all rays through it.
+ */
+void voxel_grid_hidden(struct arena *arena, const struct voxel_grid *finest, double areas[3]);
+/* The powers of their covers that optical depths have to be multiplied with so that the grid hides
+ * such areas (in its own faces). Voxels behind each other share their outlines, so that those that
+ * hide a part of their faces hide too much together; what is full stays opaque. */
+void voxel_grid_temper(struct arena *arena, const struct voxel_grid *grid, const double areas[3],
+                       float powers[3]);
 /* Empty cells (0) become their Chebyshev distance to the nearest full one, at most 255; full ones
  * stay and must be VOXELS_FIRST or more. */
 void voxel_distances(const uint32_t size[3], uint32_t *cells);

@@ -1,0 +1,456 @@
+/* The ray march: kernels against closed forms and each other, pictures against the reference. */
+#include "testing.h"
+
+#include "reference_world.h"
+
+#include "bake/march.h"
+#include "bake/march_parts.h"
+
+#include <stdlib.h>
+
+/* A box of equal voxels, seen from outside along a direction. */
+struct slab {
+    struct voxels voxels;
+    struct voxel voxel;
+    uint32_t cells[8 * 6 * 5];
+    struct march_job job;
+    struct march_rays rays;
+};
+
+static const struct march_form unit = {{1}}, third = {{1.0f / 3}};
+
+static void slab_fill(struct slab *slab, float extinction, const float eye[3], const float ray[3])
+{
+    const int32_t size[3] = {8, 6, 5};
+    struct voxel_optics optics = {.extinction = extinction, .evenness = 1, .albedo = {1, 1, 1}};
+    memset(slab, 0, sizeof *slab);
+    slab->voxel = voxel_pack(&optics, (const float[3]){1, 1, 1});
+    for (int i = 0; i < 8 * 6 * 5; i++)
+        slab->cells[i] = VOXELS_FIRST;
+    struct march_job *job = &slab->job;
+    job->cells = slab->cells;
+    job->voxels = (const uint32_t *)(const void *)&slab->voxel;
+    memcpy(job->size, size, sizeof size);
+    memcpy(job->eye, eye, sizeof job->eye);
+    memcpy(job->first, ray, sizeof job->first);
+    job->speed = sqrtf(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
+    job->step = 1;
+    job->hidden = job->seen = job->lit = unit;
+    for (int c = 0; c < 3; c++)
+        job->shade[c] = 1.0f / 255; /* every voxel glows with radiance 1 */
+    job->clear = 1;
+    for (int i = 0; i < MARCH_RAYS; i++) {
+        slab->rays.left[i] = 1;
+        slab->rays.depths_m[i] = INFINITY;
+    }
+}
+
+/* Length of a ray within the box, in double. */
+static double length_within(const float eye[3], const float ray[3])
+{
+    const double size[3] = {8, 6, 5};
+    double from = 0, to = INFINITY, speed = 0;
+    for (int i = 0; i < 3; i++) {
+        double a = -eye[i] / (double)ray[i], b = (size[i] - eye[i]) / (double)ray[i];
+        from = fmax(from, fmin(a, b));
+        to = fmin(to, fmax(a, b));
+        speed += (double)ray[i] * ray[i];
+    }
+    return to > from ? (to - from) * sqrt(speed) : 0;
+}
+
+static void random_ray(struct random *random, float eye[3], float ray[3])
+{
+    const float middle[3] = {4, 3, 2.5f};
+    for (int i = 0; i < 3; i++) {
+        float within = middle[i] * (0.3f + 1.4f * random_float(random));
+        eye[i] = middle[i] + 40 * (random_float(random) - 0.5f);
+        ray[i] = (within - eye[i]) / 10;
+    }
+}
+
+static void test_march__a_homogeneous_box_lets_exp_of_its_depth_through_from_any_side(void **state)
+{
+    (void)state;
+    struct march_isa isas[4];
+    size_t count = march_isas(isas);
+    struct random random = random_seed(5, 1);
+    for (int n = 0; n < 200; n++) {
+        float eye[3], ray[3];
+        struct slab slab;
+        random_ray(&random, eye, ray);
+        double expected = exp(-0.3 * length_within(eye, ray));
+        for (size_t isa = 0; isa < count; isa++)
+            for (int part = 1; part <= 4; part *= 4) {
+                slab_fill(&slab, 0.3f, eye, ray);
+                slab.job.step = 1.0f / (float)part; /* however it is cut */
+                isas[isa].block(&slab.job, &slab.rays);
+                for (int lane = 0; lane < MARCH_RAYS; lane++) {
+                    assert_true(fabs(slab.rays.left[lane] - expected) < 2e-5);
+                    /* Kajiya and Kay: a medium of radiance 1 gives 1 - T */
+                    assert_true(fabs(slab.rays.rgb[0][lane] + slab.rays.left[lane] - 1) < 1e-5);
+                }
+            }
+    }
+}
+
+static void test_march__nothing_hides_nothing_and_opaque_all(void **state)
+{
+    (void)state;
+    struct march_isa isas[4];
+    size_t count = march_isas(isas);
+    const float eye[3] = {-3, 3.1f, 2.2f}, ray[3] = {1, 0, 0}, away[3] = {-1, 0, 0};
+    struct slab slab;
+    for (size_t isa = 0; isa < count; isa++) {
+        slab_fill(&slab, 0, eye, ray);
+        assert_true(isas[isa].block(&slab.job, &slab.rays));
+        assert_true(slab.rays.left[0] == 1 && slab.rays.rgb[0][0] == 0);
+        slab_fill(&slab, 1e6f, eye, ray);
+        assert_false(isas[isa].block(&slab.job, &slab.rays));
+        assert_true(slab.rays.left[0] < 1e-30f && fabsf(slab.rays.rgb[0][0] - 1) < 1e-6f);
+        slab_fill(&slab, 1e6f, eye, away);
+        isas[isa].block(&slab.job, &slab.rays);
+        assert_true(slab.rays.left[0] == 1);
+        slab_fill(&slab, 1e6f, eye, ray); /* something stands before the box */
+        slab.rays.depths_m[0] = 2.9f;
+        isas[isa].block(&slab.job, &slab.rays);
+        assert_true(slab.rays.left[0] == 1 && slab.rays.left[1] < 1e-30f);
+        slab_fill(&slab, 0.3f, (const float[3]){4, 3, 2}, ray); /* the eye within */
+        isas[isa].block(&slab.job, &slab.rays);
+        assert_true(fabs(slab.rays.left[0] - exp(-0.3 * 4)) < 2e-5);
+    }
+}
+
+/* The mean of what a leaf shows of the sun, over normals on a ring of half angle `cone` around +y:
+ * projected area weighs. */
+static void ring(double cone, const double eye[3], const double sun[3], double *two_sided,
+                 double *one_sided, double moments[6])
+{
+    double area = 0, even = 0, odd = 0;
+    memset(moments, 0, 6 * sizeof *moments);
+    enum { STEPS = 20000 };
+    for (int k = 0; k < STEPS; k++) {
+        /* cone < 0: the whole sphere, by the golden spiral */
+        double z = cone < 0 ? 1 - (2.0 * k + 1) / STEPS : cos(cone);
+        double turn = cone < 0 ? k * 2.399963229728653 : 2 * M_PI * (k + 0.5) / STEPS;
+        double r = sqrt(1 - z * z), n[3] = {r * cos(turn), z, r * sin(turn)};
+        double a = n[0] * eye[0] + n[1] * eye[1] + n[2] * eye[2];
+        double b = n[0] * sun[0] + n[1] * sun[1] + n[2] * sun[2];
+        area += fabs(a);
+        even += fabs(a) * fabs(b);
+        odd += fabs(a) * fmax(0, a > 0 ? b : -b);
+        const double products[6] = {n[0] * n[0], n[1] * n[1], n[2] * n[2],
+                                    n[0] * n[1], n[0] * n[2], n[1] * n[2]};
+        for (int i = 0; i < 6; i++)
+            moments[i] += products[i] / STEPS;
+    }
+    *two_sided = even / area;
+    *one_sided = odd / area;
+}
+
+static struct march_form form_by_hand(const double x[3], const double y[3])
+{
+    double zz = x[2] * y[2], xy = x[0] * y[1] + x[1] * y[0], xz = x[0] * y[2] + x[2] * y[0];
+    double yz = x[1] * y[2] + x[2] * y[1];
+    return (struct march_form){{(float)(zz - (xy + xz + yz) / 2), (float)((x[0] * y[0] - zz) / 63),
+                                (float)((x[1] * y[1] - zz) / 63), (float)(xy / 62),
+                                (float)(xz / 62), (float)(yz / 62)}};
+}
+
+static void light_check(double cone, double evenness, double tolerance)
+{
+    struct march_isa isas[4];
+    march_isas(isas);
+    struct random random = random_seed(11, 2);
+    for (int n = 0; n < 40; n++) {
+        double eye[3], sun[3], lengths[2] = {0, 0}, two, single, moments[6];
+        for (int i = 0; i < 3; i++) {
+            eye[i] = random_double(&random) - 0.5;
+            sun[i] = random_double(&random) - 0.5;
+            lengths[0] += eye[i] * eye[i];
+            lengths[1] += sun[i] * sun[i];
+        }
+        for (int i = 0; i < 3; i++) {
+            eye[i] /= sqrt(lengths[0]);
+            sun[i] /= sqrt(lengths[1]);
+        }
+        if (cone >= 0 && fabs(eye[1]) < 0.3)
+            continue; /* edge-on to all leaves: packing decides */
+        ring(cone, eye, sun, &two, &single, moments);
+        for (int sided = 0; sided < 2; sided++) {
+            struct slab slab;
+            slab_fill(&slab, 50, (const float[3]){-3, 3.1f, 2.2f}, (const float[3]){1, 0, 0});
+            struct voxel_optics optics = {
+                .extinction = 50, .evenness = (float)evenness, .albedo = {1, 1, 1}};
+            for (int i = 0; i < 6; i++)
+                optics.normals[i] = (float)moments[i];
+            slab.voxel = voxel_pack(&optics, (const float[3]){1, 1, 1});
+            slab.job.seen = form_by_hand(eye, eye);
+            slab.job.lit = form_by_hand(sun, sun);
+            slab.job.both = form_by_hand(eye, sun);
+            slab.job.one_sided = (float)sided;
+            for (int c = 0; c < 3; c++) {
+                slab.job.shade[c] = 0;
+                slab.job.sun[c] = 1.0f / 255;
+            }
+            isas[0].block(&slab.job, &slab.rays);
+            assert_true(fabs(slab.rays.rgb[1][0] - (sided ? single : two)) < tolerance);
+        }
+    }
+}
+
+static void test_march__light_of_leaves_is_that_of_quadrature(void **state)
+{
+    (void)state;
+    light_check(0, 1, 0.03);            /* all lie flat */
+    light_check(-1, sqrt(3) / 2, 0.03); /* turned everywhere alike */
+}
+
+static void test_march__every_instruction_set_gives_the_same_bits(void **state)
+{
+    (void)state;
+    struct march_isa isas[4];
+    size_t count = march_isas(isas);
+    struct random random = random_seed(9, 1);
+    for (int n = 0; n < 300; n++) {
+        struct slab slabs[4];
+        float eye[3], ray[3];
+        random_ray(&random, eye, ray);
+        slab_fill(&slabs[0], 0.4f, eye, ray);
+        for (int i = 0; i < 8 * 6 * 5; i++)
+            slabs[0].cells[i] = random_below(&random, 3) ? 1 : VOXELS_FIRST;
+        slabs[0].voxel.normals = random_u32(&random) >> 2;
+        slabs[0].voxel.color = random_u32(&random);
+        for (int i = 0; i < 3; i++) {
+            slabs[0].job.right[i] = 0.02f * random_float(&random);
+            slabs[0].job.down[i] = 0.02f * random_float(&random);
+            slabs[0].job.sun[i] = random_float(&random);
+        }
+        slabs[0].job.seen = slabs[0].job.lit = third;
+        slabs[0].job.both.factors[3] = 0.01f;
+        for (size_t isa = 0; isa < count; isa++) {
+            slabs[isa] = slabs[0];
+            slabs[isa].job.cells = slabs[isa].cells;
+            slabs[isa].job.voxels = (const uint32_t *)(const void *)&slabs[isa].voxel;
+        }
+        for (size_t isa = 0; isa < count; isa++) {
+            isas[isa].block(&slabs[isa].job, &slabs[isa].rays);
+            assert_memory_equal(&slabs[isa].rays, &slabs[0].rays, sizeof slabs->rays);
+        }
+    }
+}
+
+/* Leaves of leg_m turned and placed at random in a ball of radius 4 m, 5 m above the ground. */
+static struct mesh *ball_of_leaves(struct arena *arena, size_t count, double leg_m)
+{
+    struct mesh *mesh = mesh_new(arena, MATERIAL_LEAF, 0.6f, count);
+    struct random random = random_seed(21, 1);
+    while (mesh->triangles_count < count) {
+        double at[3], u[3], v[3], corners[2][3], square = 0, uu = 0, uv = 0, vv = 0;
+        for (int i = 0; i < 3; i++) {
+            at[i] = 8 * random_double(&random) - 4;
+            u[i] = random_double(&random) + random_double(&random) + random_double(&random) - 1.5;
+            v[i] = random_double(&random) + random_double(&random) + random_double(&random) - 1.5;
+            square += at[i] * at[i];
+            uu += u[i] * u[i];
+            uv += u[i] * v[i];
+        }
+        if (square > 16)
+            continue;
+        for (int i = 0; i < 3; i++) {
+            v[i] -= uv / uu * u[i];
+            vv += v[i] * v[i];
+        }
+        at[1] += 5;
+        for (int i = 0; i < 3; i++) {
+            corners[0][i] = at[i] + leg_m * u[i] / sqrt(uu);
+            corners[1][i] = at[i] + leg_m * v[i] / sqrt(vv);
+        }
+        mesh_triangle(mesh, at, corners[0], corners[1]);
+    }
+    return mesh_finish(arena, mesh);
+}
+
+static struct frame *march_picture(struct world *world, const struct march_options *options,
+                                   unsigned effects, int threads)
+{
+    struct error error = {0};
+    struct workspace workspace = {
+        .arena = world->arena, .error = &error, .effects = effects, .threads = threads};
+    struct march *march;
+    struct frame *frame =
+        frame_create(world->arena, world->view.width_px, world->view.height_px, false);
+    struct target target = {frame->width_px, frame->height_px, TARGET_RGBA32F, 0, 0, 0,
+                            frame->rgba};
+    setenv("TREELINE_CACHE", "off", 1);
+    if (march_prepare(&workspace, &world->scene, options, &march) ||
+        march_draw(&workspace, march, &world->view, &target))
+        fail_msg("%s", error.text);
+    return frame;
+}
+
+static const struct march_options usual = {
+    .resolution = 64, .stop = 0.02f, .step = 1, .bias = 0, .tile_px = 16};
+
+/* Trees of the ball, the second overlapping the first, the third within it. */
+static struct world world_of_balls(size_t trees, size_t leaves, double leg_m)
+{
+    struct world world = world_create(96, 80, 0.6);
+    struct scene *scene = &world.scene;
+    struct mesh *mesh = ball_of_leaves(world.arena, leaves, leg_m);
+    static const struct instance places[3] = {
+        {{0, 0, 0}, 0.3f, 1, 0}, {{3, 0, 2}, 1.9f, 1, 0}, {{0.2f, 2.5f, 0.1f}, 4, 0.5f, 0}};
+    scene->species_count = 1;
+    scene->species[0] =
+        (struct species){"ball", plant_from_mesh(world.arena, "ball", mesh), 1, 1, 1};
+    scene->instances_count = trees;
+    memcpy(scene->instances, places, trees * sizeof *places);
+    for (int i = 0; i < 3; i++)
+        scene->ambient[i] = 0.3f;
+    world_look(&world, 9, 8, 24, 0, 5, 0);
+    world_sun(&world, 0.5, 0.7, 0.3);
+    return world;
+}
+
+static struct frame *traced(struct world *world, unsigned effects)
+{
+    struct reference_options options = {
+        .effects = effects, .samples_min = 64, .samples_max = 64, .threads = 2, .quiet = true};
+    struct reference_stats stats;
+    struct error error = {0};
+    struct frame *frame;
+    if (reference_render(world->arena, &world->scene, &world->view, &options, &frame, &stats,
+                         &error))
+        fail_msg("%s", error.text);
+    return frame;
+}
+
+static void means_of(const struct frame *frame, double means[4])
+{
+    size_t pixels = (size_t)frame->width_px * (size_t)frame->height_px;
+    for (int c = 0; c < 4; c++) {
+        means[c] = 0;
+        for (size_t i = 0; i < pixels; i++)
+            means[c] += frame->rgba[4 * i + (size_t)c] / (double)pixels;
+    }
+}
+
+static void balls_check(size_t trees, size_t leaves, double leg_m, unsigned effects,
+                        double tolerance)
+{
+    struct world world = world_of_balls(trees, leaves, leg_m);
+    double drawn[4], true_means[4];
+    means_of(march_picture(&world, &usual, effects, 2), drawn);
+    means_of(traced(&world, effects), true_means);
+    for (int c = 0; c < 4; c++)
+        if (!(fabs(drawn[c] / true_means[c] - 1) < tolerance))
+            fail_msg("%zu trees, channel %d: %g, reference %g", trees, c, drawn[c], true_means[c]);
+    arena_destroy(world.arena);
+}
+
+static void test_march__a_ball_of_leaves_covers_and_shines_as_traced(void **state)
+{
+    (void)state;
+    balls_check(1, 3000, 0.25, EFFECT_TWO_SIDED | EFFECT_AMBIENT, 0.04);
+    balls_check(1, 3000, 0.25, EFFECT_AMBIENT, 0.04);
+    balls_check(1, 20000, 0.25, EFFECT_TWO_SIDED, 0.05);
+}
+
+static void test_march__overlapping_trees_and_one_within_another_cover_as_traced(void **state)
+{
+    (void)state;
+    balls_check(2, 3000, 0.25, EFFECT_TWO_SIDED | EFFECT_AMBIENT, 0.05);
+    balls_check(3, 3000, 0.25, EFFECT_TWO_SIDED | EFFECT_AMBIENT, 0.05);
+}
+
+static void test_march__light_along_each_axis_shines_as_traced(void **state)
+{
+    (void)state;
+    struct world world = world_of_balls(1, 3000, 0.25);
+    for (int axis = 0; axis < 6; axis++) {
+        double to[3] = {0, 0, 0}, drawn[4], true_means[4];
+        to[axis % 3] = axis < 3 ? 1 : -1;
+        world_sun(&world, to[0], to[1], to[2]);
+        means_of(march_picture(&world, &usual, EFFECT_TWO_SIDED, 2), drawn);
+        means_of(traced(&world, EFFECT_TWO_SIDED), true_means);
+        if (!(fabs(drawn[1] / true_means[1] - 1) < 0.05))
+            fail_msg("axis %d: %g, reference %g", axis, drawn[1], true_means[1]);
+    }
+    arena_destroy(world.arena);
+}
+
+static void test_march__the_eye_within_a_crown_sees_as_traced(void **state)
+{
+    (void)state;
+    struct world world = world_of_balls(1, 3000, 0.25);
+    double drawn[4], true_means[4];
+    world_look(&world, 0.4f, 5.2f, 0.3f, 4, 6, -3);
+    means_of(march_picture(&world, &usual, EFFECT_TWO_SIDED, 2), drawn);
+    means_of(traced(&world, EFFECT_TWO_SIDED), true_means);
+    assert_true(fabs(drawn[3] - true_means[3]) < 0.06);
+    arena_destroy(world.arena);
+}
+
+static void test_march__threads_tiles_and_instruction_sets_change_no_byte(void **state)
+{
+    (void)state;
+    struct world world = world_of_balls(3, 2000, 0.25);
+    struct march_options plain = usual, tiles = usual;
+    plain.isa = "plain";
+    tiles.tile_px = 8;
+    const struct frame *first = march_picture(&world, &usual, EFFECT_TWO_SIDED, 1);
+    size_t size = 4 * sizeof(float) * 96 * 80;
+    assert_memory_equal(march_picture(&world, &usual, EFFECT_TWO_SIDED, 3)->rgba, first->rgba,
+                        size);
+    assert_memory_equal(march_picture(&world, &plain, EFFECT_TWO_SIDED, 2)->rgba, first->rgba,
+                        size);
+    const struct frame *other = march_picture(&world, &tiles, EFFECT_TWO_SIDED, 2);
+    double sum = 0; /* of what differs: a tile's direction stands for its pixels' */
+    for (size_t i = 0; i < 4 * 96 * 80; i++)
+        sum += fabs((double)other->rgba[i] - first->rgba[i]);
+    assert_true(sum / (4 * 96 * 80) < 0.005);
+    arena_destroy(world.arena);
+}
+
+/* Trees grow smaller than pixels: they cover what they covered, whichever way they are drawn. The
+ * ball is nearly opaque: about its disc. Coarse voxels widen it, by less than half of one. */
+static void test_march__trees_of_a_pixel_and_below_cover_what_they_ought_to(void **state)
+{
+    (void)state;
+    struct world world = world_of_balls(1, 20000, 0.25);
+    world.scene.camera.far_m = 1e6f;
+    for (float distance = 300; distance < 20000; distance *= 1.7f) {
+        double radius_px = 4 * 40 / tan(0.3) / (sqrt(1.26) * distance), drawn = 0;
+        enum { PLACES = 9 };
+        for (int k = 0; k < PLACES; k++) { /* in the pixel */
+            float shift = distance * 0.0026f, means[2] = {(float)(k % 3), (float)(k / 3)};
+            double one[4];
+            world_look(&world, 0.1f * distance, 0.5f * distance, distance, shift * means[0],
+                       5 + shift * means[1], 0);
+            means_of(march_picture(&world, &usual, 0, 2), one);
+            drawn += one[3] * 96 * 80 / PLACES;
+        }
+        double wide = radius_px > 0.4 ? radius_px + 0.3 : radius_px;
+        double low = 0.95 * M_PI * radius_px * radius_px, high = 1.05 * M_PI * wide * wide;
+        if (!(drawn > low && drawn < high))
+            fail_msg("at %g m: %g px, of a disc of %g to %g", (double)distance, drawn, low, high);
+    }
+    arena_destroy(world.arena);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_march__a_homogeneous_box_lets_exp_of_its_depth_through_from_any_side),
+        cmocka_unit_test(test_march__nothing_hides_nothing_and_opaque_all),
+        cmocka_unit_test(test_march__light_of_leaves_is_that_of_quadrature),
+        cmocka_unit_test(test_march__every_instruction_set_gives_the_same_bits),
+        cmocka_unit_test(test_march__a_ball_of_leaves_covers_and_shines_as_traced),
+        cmocka_unit_test(test_march__overlapping_trees_and_one_within_another_cover_as_traced),
+        cmocka_unit_test(test_march__light_along_each_axis_shines_as_traced),
+        cmocka_unit_test(test_march__the_eye_within_a_crown_sees_as_traced),
+        cmocka_unit_test(test_march__threads_tiles_and_instruction_sets_change_no_byte),
+        cmocka_unit_test(test_march__trees_of_a_pixel_and_below_cover_what_they_ought_to),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
