@@ -271,22 +271,40 @@ static struct mesh *ball_of_leaves(struct arena *arena, size_t count, double leg
     return mesh_finish(arena, mesh);
 }
 
-static struct frame *march_picture(struct world *world, const struct march_options *options,
-                                   unsigned effects, int threads)
-{
-    struct error error = {0};
-    struct workspace workspace = {
-        .arena = world->arena, .error = &error, .effects = effects, .threads = threads};
+/* A march made ready, and what it keeps. */
+struct ready {
+    struct workspace workspace;
+    struct error error;
     struct march *march;
+};
+
+static struct ready *march_ready(struct world *world, const struct march_options *options,
+                                 unsigned effects, int threads)
+{
+    struct ready *ready = ARENA_NEW(world->arena, struct ready);
+    ready->workspace = (struct workspace){
+        .arena = world->arena, .error = &ready->error, .effects = effects, .threads = threads};
+    setenv("TREELINE_CACHE", "off", 1);
+    if (march_prepare(&ready->workspace, &world->scene, options, &ready->march))
+        fail_msg("%s", ready->error.text);
+    return ready;
+}
+
+static struct frame *ready_picture(struct world *world, struct ready *ready)
+{
     struct frame *frame =
         frame_create(world->arena, world->view.width_px, world->view.height_px, false);
     struct target target = {frame->width_px, frame->height_px, TARGET_RGBA32F, 0, 0, 0,
                             frame->rgba};
-    setenv("TREELINE_CACHE", "off", 1);
-    if (march_prepare(&workspace, &world->scene, options, &march) ||
-        march_draw(&workspace, march, &world->view, &target))
-        fail_msg("%s", error.text);
+    if (march_draw(&ready->workspace, ready->march, &world->view, &target))
+        fail_msg("%s", ready->error.text);
     return frame;
+}
+
+static struct frame *march_picture(struct world *world, const struct march_options *options,
+                                   unsigned effects, int threads)
+{
+    return ready_picture(world, march_ready(world, options, effects, threads));
 }
 
 static const struct march_options usual = {
@@ -367,11 +385,12 @@ static void test_march__light_along_each_axis_shines_as_traced(void **state)
 {
     (void)state;
     struct world world = world_of_balls(1, 3000, 0.25);
+    struct ready *ready = march_ready(&world, &usual, EFFECT_TWO_SIDED, 2);
     for (int axis = 0; axis < 6; axis++) {
         double to[3] = {0, 0, 0}, drawn[4], true_means[4];
         to[axis % 3] = axis < 3 ? 1 : -1;
         world_sun(&world, to[0], to[1], to[2]);
-        means_of(march_picture(&world, &usual, EFFECT_TWO_SIDED, 2), drawn);
+        means_of(ready_picture(&world, ready), drawn);
         means_of(traced(&world, EFFECT_TWO_SIDED), true_means);
         if (!(fabs(drawn[1] / true_means[1] - 1) < 0.05))
             fail_msg("axis %d: %g, reference %g", axis, drawn[1], true_means[1]);
@@ -418,6 +437,7 @@ static void test_march__trees_of_a_pixel_and_below_cover_what_they_ought_to(void
 {
     (void)state;
     struct world world = world_of_balls(1, 20000, 0.25);
+    struct ready *ready = march_ready(&world, &usual, 0, 2);
     world.scene.camera.far_m = 1e6f;
     for (float distance = 300; distance < 20000; distance *= 1.7f) {
         double radius_px = 4 * 40 / tan(0.3) / (sqrt(1.26) * distance), drawn = 0;
@@ -427,7 +447,7 @@ static void test_march__trees_of_a_pixel_and_below_cover_what_they_ought_to(void
             double one[4];
             world_look(&world, 0.1f * distance, 0.5f * distance, distance, shift * means[0],
                        5 + shift * means[1], 0);
-            means_of(march_picture(&world, &usual, 0, 2), one);
+            means_of(ready_picture(&world, ready), one);
             drawn += one[3] * 96 * 80 / PLACES;
         }
         double wide = radius_px > 0.4 ? radius_px + 0.3 : radius_px;
