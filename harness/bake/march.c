@@ -17,12 +17,20 @@ struct march {
     struct cull *cull;
     struct backdrop_cpu *backdrop;
     struct march_seen *seen; /* of the trees in view, in their order */
-    size_t fars_count;       /* turns of species */
-    struct march_far *fars;  /* of a tile's direction, for each thread */
+    size_t turns_count;      /* of all species */
+    struct march_far *fars;  /* by thread, region of the picture, turn */
     size_t tiles_capacity, entries_capacity;
     uint32_t *tile_first; /* threads + 1 runs of tiles + 1 */
     uint32_t *entries;    /* numbers of the list, tile by tile */
 };
+
+/* The picture's regions, each with one direction for its far trees. */
+enum { REGIONS = 4 };
+
+static size_t fars_of_thread(const struct march *march)
+{
+    return REGIONS * REGIONS * march->turns_count;
+}
 
 static march_block *block_named(const char *name)
 {
@@ -85,9 +93,9 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
                               &march->species[i], &bounds[i]);
     if (status)
         return status;
-    march->fars_count = MARCH_TURNS * scene->species_count;
+    march->turns_count = MARCH_TURNS * scene->species_count;
     march->fars = ARENA_ARRAY(workspace->arena, struct march_far,
-                              march->fars_count * (size_t)workspace->threads);
+                              fars_of_thread(march) * (size_t)workspace->threads);
     march->trees = ARENA_ARRAY(workspace->arena, struct march_tree, scene->instances_count);
     march->seen = ARENA_ARRAY(workspace->arena, struct march_seen, scene->instances_count);
     trees_fill(march, scene);
@@ -182,7 +190,7 @@ struct canvas {
     float depths_m[TILE_MAX * TILE_MAX];
     float rgb[TILE_MAX * TILE_MAX][3];
     struct backdrop_tile tile;
-    struct march_far *fars; /* for the tile's direction, made when first needed */
+    struct march_far *fars; /* the thread's, made when first needed */
     int across, blocks_count, open_count;
 };
 
@@ -215,8 +223,6 @@ static void canvas_begin(struct canvas *canvas, const struct march *march,
         }
     for (int block = 0; block < canvas->blocks_count; block++)
         canvas->open[block] = true;
-    for (size_t i = 0; i < march->fars_count; i++)
-        canvas->fars[i].made = false;
 }
 
 /* Pixels outside the picture were never opened. */
@@ -243,7 +249,19 @@ static void canvas_end(const struct canvas *canvas, float stop, const struct vie
         }
 }
 
-static void canvas_splat(struct canvas *canvas, const struct march_splat *splat)
+/* A pixel's centre may see the ground before the tree that stands on it, since the tree is
+ * elsewhere in the pixel: what hides the tree is nearer than the plane of its foot. */
+static bool splat_is_hidden(const struct march_splat *splat, const struct backdrop_rays *rays,
+                            float x_px, float y_px, float behind_m)
+{
+    float rise = rays->first[1] + x_px * rays->right[1] + y_px * rays->down[1];
+    float plane_m = splat->lift_m / rise;
+    bool meets = plane_m > 0 && plane_m < splat->depth_m;
+    return !(behind_m > (meets ? 0.98f * plane_m : splat->depth_m));
+}
+
+static void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
+                         const struct backdrop_rays *picture_rays)
 {
     for (int k = 0; k < 4; k++) {
         int x = splat->x_px + (k & 1) - canvas->tile.x_px;
@@ -253,7 +271,8 @@ static void canvas_splat(struct canvas *canvas, const struct march_splat *splat)
         struct march_rays *rays =
             &canvas->blocks[y / MARCH_BLOCK * canvas->across + x / MARCH_BLOCK];
         int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
-        if (!(splat->depth_m < rays->depths_m[lane]))
+        if (splat_is_hidden(splat, picture_rays, (float)(splat->x_px + (k & 1)),
+                            (float)(splat->y_px + (k >> 1)), rays->depths_m[lane]))
             continue;
         float share = rays->left[lane] * splat->shares[k];
         rays->left[lane] -= share;
@@ -293,13 +312,29 @@ static void canvas_march(struct canvas *canvas, const struct march *march,
         }
 }
 
+/* The tree from far away in the direction of the tile's region. */
+static const struct march_far *far_of(const struct march *march, const struct march_view *picture,
+                                      const struct tiles *tiles, size_t tile,
+                                      const struct march_tree *tree, struct canvas *canvas)
+{
+    const struct view *view = picture->view;
+    size_t x = tile % (size_t)tiles->across * REGIONS / (size_t)tiles->across;
+    size_t y = tile / (size_t)tiles->across * REGIONS / (size_t)tiles->down;
+    size_t turn = MARCH_TURNS * (size_t)tree->species + tree->turn;
+    struct march_far *far = &canvas->fars[(y * REGIONS + x) * march->turns_count + turn];
+    if (!far->made)
+        march_far_fill(picture, tree->species, tree->turn,
+                       ((float)x + 0.5f) / REGIONS * (float)view->width_px - 0.5f,
+                       ((float)y + 0.5f) / REGIONS * (float)view->height_px - 0.5f, march->block,
+                       far);
+    return far;
+}
+
 static void tile_draw(const struct march *march, const struct march_view *picture,
                       const struct tiles *tiles, const struct cull_list *list, size_t tile,
                       struct canvas *canvas, float *pixels)
 {
     canvas_begin(canvas, march, tiles, picture->view, tile);
-    float half = 0.5f * (float)(canvas->tile.stride - 1);
-    float middle_x = (float)canvas->tile.x_px + half, middle_y = (float)canvas->tile.y_px + half;
     for (uint32_t at = march->tile_first[tile];
          at < march->tile_first[tile + 1] && canvas->open_count; at++) {
         uint32_t k = march->entries[at];
@@ -308,13 +343,9 @@ static void tile_draw(const struct march *march, const struct march_view *pictur
             canvas_march(canvas, march, picture, tree, &march->seen[k]);
             continue;
         }
-        struct march_far *far = &canvas->fars[MARCH_TURNS * tree->species + tree->turn];
         struct march_splat splat;
-        if (!far->made)
-            march_far_fill(picture, tree->species, tree->turn, middle_x, middle_y, march->block,
-                           far);
-        march_splat_of(picture, tree, far, &splat);
-        canvas_splat(canvas, &splat);
+        march_splat_of(picture, tree, far_of(march, picture, tiles, tile, tree, canvas), &splat);
+        canvas_splat(canvas, &splat, &picture->rays);
     }
     canvas_end(canvas, march->options.stop, picture->view, pixels);
 }
@@ -338,7 +369,8 @@ enum status march_draw(struct workspace *workspace, struct march *march, const s
 #pragma omp parallel num_threads(workspace->threads)
     {
         struct canvas canvas;
-        canvas.fars = march->fars + march->fars_count * (size_t)omp_get_thread_num();
+        canvas.fars = march->fars + fars_of_thread(march) * (size_t)omp_get_thread_num();
+        memset(canvas.fars, 0, fars_of_thread(march) * sizeof *canvas.fars);
 #pragma omp for schedule(dynamic, 1)
         for (size_t tile = 0; tile < tiles.count; tile++)
             tile_draw(march, &picture, &tiles, &list, tile, &canvas, target->pixels);

@@ -91,6 +91,16 @@ static struct march_seen see_small(const struct march_view *picture, const struc
     return seen;
 }
 
+/* Half of what a box spreads along an axis of the screen, per depth of 1. slope: of its middle. */
+static float spread_of(const struct box *box, const float axis[3], const float forward[3],
+                       float slope)
+{
+    float spread = 0;
+    for (int k = 0; k < 3; k++)
+        spread += fabsf(dot3(box->half_m[k], axis) - slope * dot3(box->half_m[k], forward));
+    return spread;
+}
+
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
                             float depth_m)
 {
@@ -116,10 +126,9 @@ struct march_seen march_see(const struct march_view *picture, const struct march
             seen_between(&seen, i, 0, (float)size_px, size_px);
             continue;
         }
-        float slope = dot3(box.middle_m, axis) / middle, spread = 0;
-        for (int k = 0; k < 3; k++)
-            spread += fabsf(dot3(box.half_m[k], axis) - slope * dot3(box.half_m[k], view->forward));
-        spread *= picture->focal_px / (middle - reach);
+        float slope = dot3(box.middle_m, axis) / middle;
+        float spread =
+            spread_of(&box, axis, view->forward, slope) * picture->focal_px / (middle - reach);
         float at = 0.5f * (float)size_px + picture->focal_px * slope - 0.5f;
         seen_between(&seen, i, ceilf(at - spread), floorf(at + spread), size_px);
     }
@@ -214,57 +223,78 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     fog_fill(picture, &box, job);
 }
 
-/* The coarsest level is one voxel; a ray along an axis through its middle is covered by the share
- * that rays along this axis are, and its face is as large as a voxel's: so this much of the screen
- * is covered, and between the axes what the voxel's shape says. Fog is left to each tree. */
+/* The box before the eye on the ray, far away, in FAR_SIDE x FAR_SIDE rays; what is covered in the
+ * plane through its middle along the screen. Fog is left to each tree. */
+enum { FAR_SIDE = 16 };
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
                     float y_px, march_block *block, struct march_far *far)
 {
     const float angle = 6.2831853f * (float)turn / MARCH_TURNS;
+    const struct view *view = picture->view;
     const struct voxels *voxels = picture->species[species].voxels;
-    const uint32_t last = voxels->levels_count - 1;
-    const float side_m = voxels->levels[last].voxel_m, depth_m = 1000 * side_m;
-    struct march_view clear = *picture;
+    const float depth_m = 2000 * picture->species[species].radius_m;
+    struct march_view away = *picture;
     struct march_tree tree = {
         .cosine = cosf(angle), .sine = sinf(angle), .scale = 1, .species = species};
-    struct march_job job;
-    struct march_rays rays = {.left = {0}};
-    clear.effects &= ~(unsigned)EFFECT_FOG;
-    for (int i = 0; i < 3; i++) /* its middle stands on the ray */
-        tree.position_m[i] = picture->view->eye_m[i];
-    struct box box = box_of(picture, &tree, voxels, last);
+    struct box box = box_of(picture, &tree, voxels, 0);
+    float ray[3], sides_m[2];
     for (int i = 0; i < 3; i++)
-        tree.position_m[i] += depth_m * (picture->rays.first[i] + x_px * picture->rays.right[i] +
-                                         y_px * picture->rays.down[i]) -
-                              box.middle_m[i];
-    march_job_fill(&clear, &tree, last, x_px, y_px, &job);
-    job.near_m = depth_m - 0.5f / job.speed;
-    job.step = 1;
-    rays.left[0] = 1;
-    rays.depths_m[0] = depth_m + 0.5f / job.speed;
-    block(&job, &rays);
-    far->made = true;
-    far->cover = 1 - rays.left[0];
+        ray[i] =
+            picture->rays.first[i] + x_px * picture->rays.right[i] + y_px * picture->rays.down[i];
+    for (int i = 0; i < 3; i++) /* its middle stands on the ray */
+        tree.position_m[i] = depth_m * ray[i] - box.middle_m[i];
+    for (int k = 0; k < 2; k++) {
+        const float *axis = k ? view->up : view->right;
+        sides_m[k] = 2 * spread_of(&box, axis, view->forward, dot3(ray, axis)) / FAR_SIDE;
+    }
+    for (int i = 0; i < 3; i++) {
+        away.rays.right[i] = sides_m[0] / depth_m * view->right[i];
+        away.rays.down[i] = -sides_m[1] / depth_m * view->up[i];
+        away.rays.first[i] =
+            ray[i] - 0.5f * (FAR_SIDE - 1) * (away.rays.right[i] + away.rays.down[i]);
+    }
+    float level = floorf(log2f(sqrtf(sides_m[0] * sides_m[1]) / voxels->levels[0].voxel_m));
+    level = fminf(fmaxf(level, 0), (float)(voxels->levels_count - 1));
+    away.effects &= ~(unsigned)EFFECT_FOG;
+    struct march_job job;
+    const float middle = 0.5f * (FAR_SIDE - 1), voxel_m = voxels->levels[(int)level].voxel_m;
+    march_job_fill(&away, &tree, (uint32_t)level, middle, middle, &job);
+    *far = (struct march_far){.made = true};
+    for (int at = 0; at < FAR_SIDE * FAR_SIDE; at += MARCH_RAYS) {
+        struct march_rays rays = {.left = {0}};
+        march_job_aim(&away, &tree, (float)(at / MARCH_BLOCK % FAR_SIDE),
+                      (float)(at / MARCH_BLOCK / FAR_SIDE * MARCH_BLOCK), voxel_m, &job);
+        for (int lane = 0; lane < MARCH_RAYS; lane++) {
+            rays.left[lane] = 1;
+            rays.depths_m[lane] = 2 * depth_m;
+        }
+        block(&job, &rays);
+        for (int lane = 0; lane < MARCH_RAYS; lane++) {
+            far->cover_m2 += 1 - rays.left[lane];
+            for (int c = 0; c < 3; c++)
+                far->rgb[c] += rays.rgb[c][lane];
+        }
+    }
     for (int c = 0; c < 3; c++)
-        far->rgb[c] = far->cover > 0 ? rays.rgb[c][0] / far->cover : 0;
+        far->rgb[c] = far->cover_m2 > 0 ? far->rgb[c] / far->cover_m2 : 0;
+    far->cover_m2 *= sides_m[0] * sides_m[1];
 }
 
 void march_splat_of(const struct march_view *picture, const struct march_tree *tree,
                     const struct march_far *far, struct march_splat *splat)
 {
-    const struct voxels *voxels = picture->species[tree->species].voxels;
     float middle[3], clear = 1;
     middle_of(picture, tree, middle);
     float left = floorf(middle[0]), top = floorf(middle[1]);
     float right = middle[0] - left, low = middle[1] - top;
-    float side_px = tree->scale * voxels->levels[voxels->levels_count - 1].voxel_m *
-                    picture->focal_px / middle[2];
-    float area = far->cover * side_px * side_px;
+    float per_m = tree->scale * picture->focal_px / middle[2];
+    float area = far->cover_m2 * per_m * per_m;
     const float shares[4] = {(1 - right) * (1 - low), right * (1 - low), (1 - right) * low,
                              right * low};
     splat->x_px = (int)left;
     splat->y_px = (int)top;
     splat->depth_m = middle[2];
+    splat->lift_m = tree->position_m[1] - picture->view->eye_m[1];
     if (picture->effects & EFFECT_FOG && picture->scene->fog.density_per_m > 0) {
         float x = (middle[0] - 0.5f * (float)picture->view->width_px) / picture->focal_px;
         float y = (middle[1] - 0.5f * (float)picture->view->height_px) / picture->focal_px;

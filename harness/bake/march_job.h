@@ -52,15 +52,16 @@ void march_job_aim(const struct march_view *picture, const struct march_tree *tr
 /* How a species, turned by a step, looks from far away in a direction. */
 struct march_far {
     bool made;
-    float cover, rgb[3]; /* share of a square of the coarsest voxel's side; radiance */
+    float cover_m2, rgb[3]; /* hidden of the screen's plane at its depth, for scale 1; radiance */
 };
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
                     float y_px, march_block *block, struct march_far *far);
 
 /* A tree that is hardly larger than a pixel: the shares of four pixels that it covers. */
 struct march_splat {
-    int x_px, y_px; /* the upper left one */
-    float depth_m, rgb[3];
+    int x_px, y_px;        /* the upper left one */
+    float depth_m, lift_m; /* of its middle; of its foot above the eye */
+    float rgb[3];
     float shares[4]; /* upper left, upper right, lower left, lower right */
 };
 void march_splat_of(const struct march_view *picture, const struct march_tree *tree,
