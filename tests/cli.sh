@@ -58,7 +58,7 @@ refuses 'distances without a sheet' 64 '--distances needs --sheet' render --scen
 refuses 'a sheet without a direction' 64 'the eye is 0 m from the target' render --scene tiny --method null --sheet --eye 1,1,1 --target 1,1,1
 refuses 'frames of one view' 64 'takes no --output' render --scene tiny --method null --frames "$work/f" -o "$work/a.png"
 refuses 'a sheet beyond the largest picture' 64 'take a smaller --size' render --scene tiny --method null --sheet --size 5000x5000
-refuses 'a picture above the largest frame' 65 '67108864 pixels; at most 33554432' render --scene tiny --method null --size 8192x8192
+refuses 'a picture above the largest frame' 65 '67117056 pixels; at most 67108864' render --scene tiny --method null --size 8193x8192
 refuses 'an option that stands twice' 65 "'views' stands twice" run --scene tiny --method billboards:views=8,views=16 --dry-run
 refuses 'a folder without a name' 64 "'' is not the name of a folder" run "${good[@]}" --out ''
 # A pipe has no end to wait for.

@@ -215,7 +215,7 @@ static void test_cell_parse__a_bad_name_is_refused_in_one_clear_line(void **stat
         {"tiny/null/lod=best", "low|intermediate|high|auto", STATUS_INVALID},
         {"tiny/null/size=0x5", "1..16384", STATUS_INVALID},
         {"tiny/null/size=800", "WIDTHxHEIGHT", STATUS_INVALID},
-        {"tiny/null/size=8192x4097", "33562624 pixels; at most 33554432", STATUS_INVALID},
+        {"tiny/null/size=8192x8193", "67117056 pixels; at most 67108864", STATUS_INVALID},
         {"tiny/null/trees=1/lod=low/trees=2", "'trees' stands twice", STATUS_INVALID},
         {"tiny/null/target=rgb", "rgba8|rgba16f|rgba32f", STATUS_INVALID},
         {"tiny/null/seed=x", "seed", STATUS_INVALID},

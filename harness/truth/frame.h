@@ -17,8 +17,8 @@ struct frame {
 
 /* What frame_check lets alpha overshoot [0, 1] by: blending in 16-bit floats rounds. */
 #define FRAME_ALPHA_TOLERANCE 0.01f
-/* Largest picture: 2^25 pixels (8K is 7680 x 4320), no side above 2^15. */
-#define FRAME_PIXELS_MAX (1 << 25)
+/* Largest picture: 2^26 pixels (8192 x 8192), no side above 2^15. */
+#define FRAME_PIXELS_MAX (1 << 26)
 #define FRAME_SIDE_MAX_PX (1 << 15)
 
 /* Zeroed. A size outside the limits above is the caller's mistake: it is cut to them. */
