@@ -189,7 +189,8 @@ static void mark_block(const struct sift_work *work, const struct sift_set *set,
     const float(*m)[4] = work->rows;
     float near_m = work->screen->near_m, focal = work->screen->focal_px * work->scale * growth;
     float right = (float)work->screen->width_px, low = work->low_row, high = work->high_row;
-    float scale = work->scale * growth, shift_x = 1 - place[0], shift_y = 1 - place[1];
+    float behind_m = 0.999f * near_m, scale = work->scale * growth, shift_x = 1 - place[0],
+          shift_y = 1 - place[1];
     for (size_t i = 0; i < count; i++) {
         float w = m[2][0] * x[i] + m[2][1] * y[i] + m[2][2] * z[i] + m[2][3];
         float inverse = 1 / w, r = radius[i] * focal * inverse + margin_px;
@@ -207,7 +208,8 @@ static void mark_block(const struct sift_work *work, const struct sift_set *set,
         x0 = x0 < right + 1 ? x0 : right + 1;
         y0 = y0 < high + 1 ? y0 : high + 1;
         int meets = ((int)x1 > (int)x0) & ((int)y1 > (int)y0);
-        int close = w < near_m + 8 * scale * radius[i];
+        /* behind the near plane nothing is drawn */
+        int close = (w < near_m + 8 * scale * radius[i]) & (w > behind_m - scale * radius[i]);
         marks[i] |= (uint8_t)(meets | close);
     }
 }
@@ -334,7 +336,7 @@ static void sift_element(struct sift_work *work, const struct sift_run *run, siz
     for (uint32_t t = set->first[element]; t < set->first[element + 1]; t++) {
         const struct sift_vertex *corners = set->vertices + 3 * (size_t)t;
         struct projected p;
-        bool close = false;
+        bool close = false, behind = true;
         if (run->stout && !(corners[0].normal[3] & 1) && corners[0].albedo[3] >= run->stout)
             continue;
         for (int i = 0; i < 3; i++) {
@@ -347,8 +349,9 @@ static void sift_element(struct sift_work *work, const struct sift_run *run, siz
             p.x[i] = (m[0][0] * x + m[0][1] * y + m[0][2] * z + m[0][3]) * inverse;
             p.y[i] = (m[1][0] * x + m[1][1] * y + m[1][2] * z + m[1][3]) * inverse;
             close |= !(p.w[i] > work->screen->near_m);
+            behind &= p.w[i] < 0.999f * work->screen->near_m;
         }
-        if (!close && !triangle_seen(work, &p, set->closed && !work->within))
+        if (behind || (!close && !triangle_seen(work, &p, set->closed && !work->within)))
             continue;
         put_triangle(work, corners, center, size, run->growth);
     }
