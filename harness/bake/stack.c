@@ -28,7 +28,7 @@ static enum status stack_program(struct workspace *workspace, struct stack *stac
         scratch, "%s%s%s%s%s%s%s%s%s", request->trilinear ? "TRILINEAR 1\n" : "",
         request->straight ? "STRAIGHT 1\n" : "", request->rough ? "ROUGH 1\n" : "",
         request->interpolate ? "INTERPOLATE 1\n" : "", request->facing ? "FACING 1\n" : "",
-        request->interpolate || request->smooth ? "POWER 1\n" : "",
+        request->interpolate || request->smooth || request->mix != STACK_ONE ? "POWER 1\n" : "",
         request->turns > 0 ? "LIT 1\n" : "", request->ground != GROUND_UPRIGHT ? "BENT 1\n" : "",
         workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
     enum status status =
@@ -127,6 +127,12 @@ static struct fill fill_tree(const struct stack *stack, const struct view *view,
         if (stack->bends)
             stack_bend_fill(stack, instance, tree, &stack->bends[fill.parts + (size_t)k]);
     }
+    if (stack->request.mix == STACK_CROSSED && count == 2) {
+        fill.quads += stack_crossed_quads(stack, parts, &stack->trees[fill.parts],
+                                          (uint32_t)fill.parts, stack->quads + fill.quads);
+        fill.parts += 2;
+        return fill;
+    }
     for (int first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && parts[end].side == parts[first].side;)
             end++;
@@ -158,16 +164,17 @@ static void draw_batch(struct workspace *workspace, const struct stack *stack, s
     }
 }
 
-enum status stack_draw(struct workspace *workspace, struct stack *stack, const struct view *view,
-                       struct target *target)
+void stack_backdrop(struct workspace *workspace, struct stack *stack, const struct view *view,
+                    struct target *target)
+{
+    workspace->gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    backdrop_draw(workspace, stack->backdrop, view);
+    workspace->gl->Flush(); /* a software GL fills it while the trees are culled and sorted */
+}
+
+enum status stack_trees(struct workspace *workspace, struct stack *stack, const struct view *view)
 {
     struct gl *gl = workspace->gl;
-    enum status status = stack_relight(workspace, stack, view->sun_direction);
-    if (status != STATUS_OK)
-        return status;
-    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
-    backdrop_draw(workspace, stack->backdrop, view);
-    gl->Flush(); /* a software GL fills the backdrop while the trees are culled and sorted */
     struct cull_list list = cull_view(stack->cull, view, CULL_BACK_TO_FRONT);
     nearby_take(stack->nearby, view, CULL_BACK_TO_FRONT, &list);
     struct fill fill = {0, 0};
@@ -184,7 +191,7 @@ enum status stack_draw(struct workspace *workspace, struct stack *stack, const s
     draw_batch(workspace, stack, fill);
     gl->Disable(GL_BLEND);
     gl->DepthMask(GL_TRUE);
-    status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);
+    enum status status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);
     gl->BindVertexArray(0);
     gl->UseProgram(0);
     for (GLuint i = 0; i < 3; i++) {
@@ -192,4 +199,14 @@ enum status stack_draw(struct workspace *workspace, struct stack *stack, const s
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
     }
     return status == STATUS_OK ? gl_check(gl, "stacks", workspace->error) : status;
+}
+
+enum status stack_draw(struct workspace *workspace, struct stack *stack, const struct view *view,
+                       struct target *target)
+{
+    enum status status = stack_relight(workspace, stack, view->sun_direction);
+    if (status != STATUS_OK)
+        return status;
+    stack_backdrop(workspace, stack, view, target);
+    return stack_trees(workspace, stack, view);
 }

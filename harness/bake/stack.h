@@ -18,6 +18,13 @@
  * on the patches of a surface). Slices are interpolated between the points. */
 enum stack_ground { GROUND_UPRIGHT, GROUND_BASE, GROUND_PATCH };
 
+/* Which stacks show a tree.
+ * one:     the one that most faces the eye.
+ * mixed:   of vertical ones the two nearest to the eye, weighted by the angle to them, one after
+ *          the other though their slices cross (Jakulin 2000).
+ * crossed: the same two, the slices of the one cut at those of the other, all of it in order. */
+enum stack_mix { STACK_ONE, STACK_MIXED, STACK_CROSSED };
+
 struct stack_request {
     struct slices_request bake; /* width_px and height_px: 0, made from resolution_px */
     int resolution_px;          /* texels along a picture's longer side */
@@ -39,6 +46,7 @@ struct stack_request {
     float criterion_px;     /* C2: parallax between two slices, px; 0: without it */
     float criterion_texels; /* C1: gap between two slices along them, texels; 0: without it */
     float texel_px;         /* mip level: texels are about this large on the picture */
+    enum stack_mix mix;
 };
 
 /* Every level halves the number of slices of the one before. */
@@ -91,7 +99,12 @@ struct stack {
 enum status stack_prepare(struct workspace *workspace, const struct scene *scene,
                           const struct stack_request *request, struct stack **stack);
 
-/* Backdrop and forest. */
+/* Binds the target and draws the backdrop; a method may add what is opaque before the forest. */
+void stack_backdrop(struct workspace *workspace, struct stack *stack, const struct view *view,
+                    struct target *target);
+/* The forest into what is bound. */
+enum status stack_trees(struct workspace *workspace, struct stack *stack, const struct view *view);
+/* Both. */
 enum status stack_draw(struct workspace *workspace, struct stack *stack, const struct view *view,
                        struct target *target);
 

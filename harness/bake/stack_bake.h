@@ -72,4 +72,14 @@ enum { STACK_DENSER = 4, STACK_QUADS_MOST = 2 * STACK_DENSER * SLICES_MOST };
 size_t stack_quads(const struct stack *stack, const struct stack_part *parts, int count,
                    const struct stack_tree *trees, uint32_t first_tree, struct stack_quad *quads);
 
+/* The quad of one place between the slices of a part, 0 the nearest; false where nothing is. */
+bool stack_quad_at(const struct stack *stack, const struct stack_part *part,
+                   const struct stack_tree *tree, float place, struct stack_quad *quad);
+
+/* Quads of a tree of two vertical parts, farthest first: those of the first are cut where they meet
+ * slices of the second. At most STACK_QUADS_MOST, as long as (n + 1) (m + 1) is not above it. */
+size_t stack_crossed_quads(const struct stack *stack, const struct stack_part parts[2],
+                           const struct stack_tree trees[2], uint32_t first_tree,
+                           struct stack_quad *quads);
+
 #endif

@@ -155,6 +155,18 @@ static int side_parts(const struct stack *stack, const struct seen *seen, enum l
     return count;
 }
 
+/* The share of the second of two neighbouring vertical sides: the angle to the first over the angle
+ * between them. That to the first follows from the cosines, both of which shrink alike as the eye
+ * rises. */
+static float mixed_share(const struct seen best[2])
+{
+    const float *first = best[0].side->frame.toward, *second = best[1].side->frame.toward;
+    float between = acosf(fminf(fabsf(dot(first, second)), 1));
+    float angle =
+        atan2f(best[1].cosine - best[0].cosine * cosf(between), best[0].cosine * sinf(between));
+    return between > 0 ? fminf(fmaxf(angle / between, 0), 0.5f) : 0;
+}
+
 int stack_parts(const struct stack *stack, const struct view *view, enum lod lod,
                 const struct instance *instance, struct stack_part *parts)
 {
@@ -169,6 +181,8 @@ int stack_parts(const struct stack *stack, const struct view *view, enum lod lod
     float other = 0;
     if (stack->request.smooth && best[1].cosine >= 0)
         other = fmaxf(0, 0.5f - (best[0].cosine - best[1].cosine) * STACK_BAND);
+    if (stack->request.mix != STACK_ONE && best[1].cosine >= 0)
+        other = mixed_share(best);
     /* Two sides are drawn in the order of the request, so that the turn of the better one is no
      * turn of the picture. */
     int count = 0, sides = other > 0 ? 2 : 1, first = sides > 1 && best[1].side < best[0].side;
@@ -237,18 +251,21 @@ void stack_tree_fill(const struct stack *stack, const struct view *view,
     tree->array = (uint32_t)part->side->array;
 }
 
-/* Half texels plus 1 of a slice's rectangle with half a texel of the mip level around it, within
- * the picture; false where nothing is covered. A trilinear filter's level may be two above. */
+/* Half texels plus 1 of what a slice's rectangle fills of the mip level, with half a texel of that
+ * around it, within the picture; false where nothing is covered. A trilinear filter's level may be
+ * two above. */
 static bool quad_rect(const struct stack *stack, const struct slice *slice,
                       const struct stack_array *array, int level, uint16_t rect[4])
 {
     const int most[2] = {2 * array->width_px, 2 * array->height_px};
     if (stack->request.rectangles && slice->width == 0)
         return false;
-    const int border = 1 << (level + (stack->request.trilinear ? 2 : 0));
-    const int low[2] = {2 * slice->left - border, 2 * slice->bottom - border};
-    const int high[2] = {2 * (slice->left + slice->width) + border,
-                         2 * (slice->bottom + slice->height) + border};
+    const int grid =
+        1 << (level + (stack->request.trilinear ? 2 : 0)); /* texels of the level lie on it */
+    const int low[2] = {2 * (slice->left / grid * grid) - grid,
+                        2 * (slice->bottom / grid * grid) - grid};
+    const int high[2] = {2 * ((slice->left + slice->width + grid - 1) / grid * grid) + grid,
+                         2 * ((slice->bottom + slice->height + grid - 1) / grid * grid) + grid};
     for (int i = 0; i < 2; i++) {
         bool whole = !stack->request.rectangles;
         rect[i] = (uint16_t)(whole || low[i] < 0 ? 1 : low[i] + 1);
@@ -257,9 +274,8 @@ static bool quad_rect(const struct stack *stack, const struct slice *slice,
     return true;
 }
 
-/* The quad of one place between the slices of a part, 0 the nearest; false where nothing is. */
-static bool quad_fill(const struct stack *stack, const struct stack_part *part,
-                      const struct stack_tree *tree, float place, struct stack_quad *quad)
+bool stack_quad_at(const struct stack *stack, const struct stack_part *part,
+                   const struct stack_tree *tree, float place, struct stack_quad *quad)
 {
     const struct stack_array *array = &stack->arrays[part->side->array];
     int last = part->level->count - 1, near = (int)floorf(place);
@@ -308,6 +324,6 @@ size_t stack_quads(const struct stack *stack, const struct stack_part *parts, in
         float place = depth * (float)part->level->count - 0.5f;
         if (part->drawn <= (float)part->level->count)
             place = (float)left[farthest];
-        filled += quad_fill(stack, part, &trees[farthest], place, &quads[filled]);
+        filled += stack_quad_at(stack, part, &trees[farthest], place, &quads[filled]);
     }
 }

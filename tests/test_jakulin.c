@@ -1,0 +1,214 @@
+/* Mixed stacks of foliage around a polygonal trunk: coverage, the order of crossing slices,
+ * turning. */
+#include "testing_tree.h"
+
+#include "bake/stack_bake.h"
+
+static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
+
+struct fixture {
+    struct arena *arena;
+    struct plant *plant;
+    const struct method *method;
+};
+
+static int open_fixture(void **state)
+{
+    struct fixture *fixture = calloc(1, sizeof *fixture);
+    fixture->arena = arena_create(0);
+    fixture->plant = plant_from_mesh(fixture->arena, "lopsided", tree_mesh(fixture->arena, 400));
+    fixture->method = tree_method("jakulin");
+    *state = fixture;
+    return 0;
+}
+
+static int close_fixture(void **state)
+{
+    struct fixture *fixture = *state;
+    arena_destroy(fixture->arena);
+    free(fixture);
+    return 0;
+}
+
+static void check_coverage(struct fixture *f, const char *options, double allowed)
+{
+    static const float elevations[2] = {0, 0.5f};
+    for (int e = 0; e < 2; e++)
+        for (int a = 0; a < 6; a++) {
+            struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
+            struct view view = tree_view(scene, (float)a * 1.0471976f, elevations[e], 300, 9);
+            struct frame *truth = tree_reference(f->arena, scene, lit, &view);
+            struct frame *drawn = tree_draw(f->arena, f->method, options, scene, lit, &view, NULL);
+            double covered = tree_mean(truth, 3), ratio = tree_mean(drawn, 3) / covered;
+            double off = tree_difference(drawn, truth, false) / covered;
+            if (fabs(ratio - 1) > allowed || off > 0.4)
+                fail_msg("azimuth %d, elevation %d: %.3f of the coverage, off by %.3f", a, e, ratio,
+                         off);
+        }
+}
+
+static void test_jakulin__coverage_is_the_plants_from_all_sides(void **state)
+{
+    check_coverage(*state, "", 0.12);
+}
+
+static void test_jakulin__in_exact_order_coverage_is_the_plants(void **state)
+{
+    check_coverage(*state, "order=exact,directions=2", 0.2);
+}
+
+static void test_jakulin__a_plant_of_bark_alone_is_drawn_as_polygons_draw_it(void **state)
+{
+    struct fixture *f = *state;
+    struct mesh *mesh = tree_mesh(f->arena, 10);
+    mesh->parts_count = 1;
+    mesh->triangles_count = mesh->parts[0].triangles_count;
+    struct plant *trunk = plant_from_mesh(f->arena, "trunk", mesh);
+    struct scene *scene = tree_scene(f->arena, trunk, 1, 1);
+    struct view view = tree_view(scene, 0.3f, 0.2f, 60, 9);
+    struct frame *drawn = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+    struct frame *truth = tree_draw(f->arena, tree_method("polygons"), "", scene, lit, &view, NULL);
+    assert_true(tree_mean(truth, 3) > 0.01);
+    assert_memory_equal(drawn->rgba, truth->rgba, 4 * TREE_PIXELS * sizeof(float));
+}
+
+/* Two stacks side by side change places as the eye turns; no step may stand out. Without the trunk:
+ * with one sample a pixel its own edges jump. */
+static void test_jakulin__turning_around_a_crown_never_jumps(void **state)
+{
+    enum { STEPS = 24 };
+    struct fixture *f = *state;
+    struct mesh *mesh = tree_mesh(f->arena, 400);
+    uint32_t bark = mesh->parts[0].triangles_count;
+    mesh->triangles += bark;
+    mesh->triangles_count -= bark;
+    mesh->parts[0] = mesh->parts[1];
+    mesh->parts_count = 1;
+    mesh->parts[0].first_triangle = 0;
+    for (uint32_t i = 0; i <= mesh->parts[0].elements_count; i++)
+        mesh->parts[0].element_first[i] -= bark;
+    struct plant *crown = plant_from_mesh(f->arena, "crown", mesh);
+    struct scene *scene = tree_scene(f->arena, crown, 1, 1);
+    struct frame *last = NULL;
+    double sum = 0, most = 0;
+    for (int i = 0; i <= STEPS; i++) {
+        struct view view = tree_view(scene, (float)i * (float)M_PI / 96, 0.2f, 300, 9);
+        struct frame *frame = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+        double step = last ? tree_difference(frame, last, false) : 0;
+        sum += step;
+        most = fmax(most, step);
+        last = frame;
+    }
+    assert_true(sum > 0);
+    assert_true(most < 2 * sum / STEPS);
+}
+
+/* ---- The order of crossing slices, ray by ray. ---- */
+
+enum { WIDTH_PX = 64, HEIGHT_PX = 64, FEWER = 5, MORE = 7 };
+
+static const int counts[2] = {FEWER, MORE};
+
+static float dot(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* A stack whose slices' normal is turned by an angle, 2 m wide, 2 m deep, 3 m high, seen from an
+ * eye on the side of its front. */
+static void stack_place(float angle, int count, struct stack_tree *tree)
+{
+    float u[3] = {cosf(angle), 0, -sinf(angle)}, w[3] = {-sinf(angle), 0, -cosf(angle)};
+    *tree = (struct stack_tree){.v_m = {0, 3, 0}, .count = (float)count};
+    for (int i = 0; i < 3; i++) {
+        tree->u_m[i] = 2 * u[i];
+        tree->w_m[i] = 2 * w[i] / (float)count;
+        tree->base_m[i] = -u[i] - w[i];
+    }
+}
+
+/* Where a ray meets a slice: the distance, and the place along its width in texels. */
+static bool meets(const struct stack_tree *tree, float slice, const float eye[3],
+                  const float ray[3], float *distance, float *texel)
+{
+    float plane[3], at[3], square = dot(tree->u_m, tree->u_m);
+    for (int i = 0; i < 3; i++)
+        plane[i] = tree->base_m[i] + (slice + 0.5f) * tree->w_m[i] - eye[i];
+    *distance = dot(plane, tree->w_m) / dot(ray, tree->w_m);
+    for (int i = 0; i < 3; i++)
+        at[i] = *distance * ray[i] - plane[i];
+    *texel = WIDTH_PX * dot(at, tree->u_m) / square;
+    return at[1] > 0 && at[1] < 3 && *texel > 0 && *texel < WIDTH_PX;
+}
+
+static void test_jakulin__every_ray_meets_crossing_slices_once_and_from_far_to_near(void **state)
+{
+    struct fixture *f = *state;
+    struct stack_array array = {.width_px = WIDTH_PX, .height_px = HEIGHT_PX};
+    struct stack stack = {.arrays = &array};
+    struct stack_level levels[2];
+    struct stack_side side = {.array = 0};
+    struct stack_tree trees[2];
+    struct stack_part parts[2];
+    struct stack_quad *quads = ARENA_ARRAY(f->arena, struct stack_quad, STACK_QUADS_MOST);
+    struct random random = random_seed(3, 1);
+    for (int k = 0; k < 2; k++) {
+        levels[k] = (struct stack_level){.count = counts[k]};
+        levels[k].slices = ARENA_ARRAY(f->arena, struct slice, (size_t)counts[k]);
+        for (int i = 0; i < counts[k]; i++)
+            levels[k].slices[i] = (struct slice){.width = WIDTH_PX, .height = HEIGHT_PX};
+        parts[k] = (struct stack_part){.side = &side, .level = &levels[k]};
+        parts[k].drawn = (float)counts[k];
+    }
+    int met = 0;
+    for (int trial = 0; trial < 2000; trial++) {
+        float turn = 6.2831853f * random_float(&random), away = 4 + 20 * random_float(&random);
+        float eye[3] = {away * sinf(turn), 1 + 4 * random_float(&random), away * cosf(turn)};
+        stack_place(turn - 0.9f * random_float(&random), FEWER, &trees[0]);
+        stack_place(turn + 0.1f + 0.6f * random_float(&random), MORE, &trees[1]);
+        float ray[3] = {1.4f * (random_float(&random) - 0.5f) - eye[0],
+                        3 * random_float(&random) - eye[1],
+                        1.4f * (random_float(&random) - 0.5f) - eye[2]};
+        size_t count = stack_crossed_quads(&stack, parts, trees, 0, quads);
+        assert_true(count <= (FEWER + 1) * (MORE + 1));
+        int hits[2] = {0, 0}, wanted[2] = {0, 0};
+        float last = INFINITY, distance, texel;
+        bool near_cut = false; /* a piece may be half a texel longer or shorter than it should */
+        for (size_t i = 0; i < count; i++) {
+            const struct stack_tree *tree = &trees[quads[i].tree];
+            if (!meets(tree, quads[i].slice, eye, ray, &distance, &texel))
+                continue;
+            float low = 0.5f * ((float)quads[i].rect[0] - 1);
+            float high = 0.5f * ((float)quads[i].rect[2] - 1);
+            near_cut = near_cut || (quads[i].tree == 0 &&
+                                    (fabsf(texel - low) < 0.6f || fabsf(texel - high) < 0.6f));
+            if (texel < low || texel >= high)
+                continue;
+            hits[quads[i].tree]++;
+            if (distance > last && !near_cut)
+                fail_msg("trial %d: %g m after %g m", trial, (double)distance, (double)last);
+            last = distance;
+        }
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < counts[k]; i++)
+                wanted[k] += meets(&trees[k], (float)i, eye, ray, &distance, &texel);
+        if (!near_cut) {
+            assert_int_equal(hits[0], wanted[0]);
+            assert_int_equal(hits[1], wanted[1]);
+            met += hits[0] * hits[1] > 0;
+        }
+    }
+    assert_true(met > 300);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_jakulin__coverage_is_the_plants_from_all_sides),
+        cmocka_unit_test(test_jakulin__in_exact_order_coverage_is_the_plants),
+        cmocka_unit_test(test_jakulin__a_plant_of_bark_alone_is_drawn_as_polygons_draw_it),
+        cmocka_unit_test(test_jakulin__turning_around_a_crown_never_jumps),
+        cmocka_unit_test(test_jakulin__every_ray_meets_crossing_slices_once_and_from_far_to_near),
+    };
+    return cmocka_run_group_tests_name("jakulin", tests, open_fixture, close_fixture);
+}
