@@ -284,12 +284,45 @@ static void test_papers__what_no_cell_decides_is_not_measured(void **state)
 {
     struct world world = make_world(*state, ROUNDS);
     static const char *const ids[] = {"senegas-same-cost-as-unshaded", "senegas-not-fill-bound",
-                                      "senegas-dilation"};
+                                      "senegas-dilation", "senegas-oblique-holes"};
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
         const struct paper_finding *finding = finding_of(&world, ids[i], "");
         assert_int_equal(finding->verdict, PAPER_NOT_MEASURED);
         assert_true(isnan(finding->ours.value));
         assert_true(*finding->reason);
+    }
+}
+
+static void test_papers__a_claim_on_errors_is_decided_by_the_errors_themselves(void **state)
+{
+    struct arena *arena = *state;
+    static const double flips[] = {0.10, 0.13}; /* whole leaves, cut ones */
+    for (int swap = 0; swap < 2; swap++) {
+        struct world world = make_world(arena, 1);
+        struct run *run = make_run(arena, "x", 1);
+        for (int cut = 0; cut < 2; cut++) {
+            const struct kind kind = {.scene = "single-tree",
+                                      .method = "shaded-texels",
+                                      .options = cut ? "path=naive,cut=clip" : "path=naive",
+                                      .trees = 1,
+                                      .lod = LOD_HIGH,
+                                      .rate = 10,
+                                      .wobble = 1};
+            add(arena, run, &kind, 1);
+            struct result *result = &run->results[run->results_count - 1];
+            result->views_count = 1;
+            result->views = ARENA_ARRAY(arena, struct result_view, 1);
+            result->views->compared = true;
+            result->views->same.value.flip = flips[cut ^ swap];
+        }
+        size_t count = 0;
+        world.book = book_make(arena, run);
+        world.beside = papers_beside(world.book, &world.paper, 1, &count);
+        const struct paper_finding *finding =
+            finding_of(&world, "senegas-centroid-slicing", "path=naive,cut=clip");
+        near(finding->ours.value, swap ? 0.10 / 0.13 : 1.3);
+        assert_int_equal(finding->verdict, swap ? PAPER_FAILS : PAPER_HOLDS);
+        assert_int_equal(finding_of(&world, "senegas-dilation", "")->verdict, PAPER_NOT_MEASURED);
     }
 }
 
@@ -413,6 +446,7 @@ static void test_papers__bad_files_are_refused_by_one_clear_line(void **state)
         {"\"kind\": \"growth\"", "\"kind\": \"ratio\"", {"over", "ratio alone"}},
         {"\"low\": 3,", "\"low\": 9,", {"band", "low below high"}},
         {"\"low\": 0.9,", "", {"band", "one of them"}},
+        {"\"same_flip\"", "\"same_flop\"", {"same_flop", "did you mean 'same_flip'"}},
         {"\"unit\": \"fps\"", "\"unit\": \"mph\"", {"mph", "fps|s"}},
         {"{\n", "{,\n", {"not JSON", ":1:"}},
     };
@@ -484,6 +518,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(test_papers__without_its_base_row_a_variant_has_rates_but_no_ratios),
         cmocka_unit_test(test_papers__verdicts_follow_from_interval_and_band),
         cmocka_unit_test(test_papers__what_no_cell_decides_is_not_measured),
+        cmocka_unit_test(test_papers__a_claim_on_errors_is_decided_by_the_errors_themselves),
         cmocka_unit_test(test_papers__one_and_two_rounds_leave_every_claim_open),
         cmocka_unit_test(test_papers__a_run_without_a_printed_cell_has_no_section),
         cmocka_unit_test(test_papers__a_variant_of_one_printed_row_has_no_table),

@@ -118,7 +118,7 @@ static void put_finding(const struct page *page, const struct paper_finding *fin
         page_safe(page, NULL);
     page_text(page, "</td>");
     put_figure(page, &finding->printed);
-    put_interval(page, &finding->ours, finding->rounds);
+    put_interval(page, &finding->ours, finding->claim->column ? SIZE_MAX : finding->rounds);
     page_text(page, "<td class=\"n\">");
     if (finding->usable > 1)
         fprintf(page->out, "%s to %s<span class=\"range\">%zu of them</span>",

@@ -44,6 +44,8 @@ struct paper_claim {
     const char *id, *claim, *figure;
     enum paper_kind kind;
     enum paper_statistic statistic;
+    const struct column *column; /* the figure is made of this number of a cell, which every round
+                                    gives alike (an error, memory); NULL: of rates */
     struct paper_side of, over;
     double low, high; /* band in which the claim holds; infinite where it is open */
     const char *why;  /* this band */
@@ -126,9 +128,11 @@ struct paper_sample {
     const struct row *row; /* NULL: printed */
     double *values;        /* rounds */
 };
-/* One a row of the book, in its order. */
+/* One a row of the book, in its order: rates or times. */
 struct paper_sample *paper_samples(const struct book *book, enum paper_unit unit,
                                    enum paper_statistic statistic, size_t *rounds);
+/* The same of a column, as a single round. */
+struct paper_sample *paper_samples_column(const struct book *book, const struct column *column);
 bool paper_side_matches(const struct paper_side *side, const struct paper_sample *sample);
 
 #endif

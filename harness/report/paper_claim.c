@@ -4,7 +4,8 @@
  * of the machine's speed cancels; its median over the rounds and the 95 % bootstrap interval are
  * held against the claim's band. It holds when the interval lies within the band, it does not when
  * the interval lies outside, and is open when the interval crosses the band's end or there are
- * fewer than three rounds. No figure is formed from a cell that did not succeed. */
+ * fewer than three rounds. No figure is formed from a cell that did not succeed. A claim on a
+ * column that every round gives alike (errors, memory) has no interval: its figure decides. */
 #include "report/paper.h"
 
 #include "base/hash.h"
@@ -85,7 +86,8 @@ static void poll_ratios(struct court *court, struct poll *poll)
                 !is_alike(court, a, b))
                 continue;
             for (size_t r = 0; r < court->rounds; r++)
-                logs[r] = log(a->values[r] / b->values[r]);
+                logs[r] =
+                    a->values[r] > 0 && b->values[r] > 0 ? log(a->values[r] / b->values[r]) : NAN;
             poll_add(court, poll, logs);
         }
 }
@@ -171,15 +173,17 @@ static void decide(struct arena *arena, struct paper_finding *finding)
              : "";
     finding->verdict = PAPER_OPEN;
     const char *why = "the interval crosses the end of the band";
-    if (finding->rounds < ROUNDS_MIN) {
+    if (!claim->column && finding->rounds < ROUNDS_MIN) {
         why = arena_printf(arena, "%zu round%s; an interval needs three", finding->rounds,
                            plural(finding->rounds));
     } else if (ours->low >= claim->low && ours->high <= claim->high) {
         finding->verdict = PAPER_HOLDS;
-        why = "the interval lies within the band";
+        why =
+            claim->column ? "the figure lies within the band" : "the interval lies within the band";
     } else if (ours->high < claim->low || ours->low > claim->high) {
         finding->verdict = PAPER_FAILS;
-        why = "the interval lies outside of the band";
+        why = claim->column ? "the figure lies outside of the band"
+                            : "the interval lies outside of the band";
     }
     finding->reason = arena_printf(arena, "%s%s", why, missing);
 }
@@ -224,6 +228,8 @@ static struct interval printed_figure(struct arena *arena, const struct paper *p
                                       const struct paper_claim *claim)
 {
     struct court court = {.arena = arena, .claim = claim, .rounds = 1};
+    if (claim->column)
+        return (struct interval){NAN, NAN, NAN};
     court.samples = printed_samples(arena, paper, claim->statistic, &court.samples_count);
     struct paper_finding finding = find(&court, NULL);
     return (struct interval){finding.ours.value, finding.smallest, finding.largest};
@@ -273,6 +279,11 @@ struct paper_finding *paper_judge(const struct book *book, const struct paper *p
     *count = 0;
     for (size_t i = 0; i < paper->claims_count; i++) {
         const struct paper_claim *claim = &paper->claims[i];
+        if (claim->column) {
+            *count += judge(book, paper, claim, paper_samples_column(book, claim->column), 1,
+                            findings + *count);
+            continue;
+        }
         if (claim->kind != PAPER_UNTESTED) {
             const struct paper_sample **of = &samples[claim->statistic];
             *of = *of ? *of : paper_samples(book, PAPER_FPS, claim->statistic, &rounds);

@@ -2,6 +2,7 @@
 #include "report/paper.h"
 
 #include "base/file.h"
+#include "base/nearest.h"
 #include "plan/names.h"
 #include "wall/json.h"
 
@@ -104,12 +105,28 @@ static void read_side(struct json *object, struct paper_side *side)
         json_fail(object, "method", "is missing; a text is required");
 }
 
+static const struct column *column_of(struct json *test)
+{
+    const char *key = json_text(test, "column", NULL), *nearest = NULL;
+    if (!key)
+        return NULL;
+    for (size_t i = 0; i < COLUMNS_COUNT; i++) {
+        if (strcmp(column_table[i].key, key) == 0)
+            return &column_table[i];
+        nearest = nearest_of(key, nearest, column_table[i].key);
+    }
+    json_fail(test, "column", "value is '%.64s'%s%s%s; allowed: the columns of results.csv", key,
+              nearest ? " (did you mean '" : "", nearest ? nearest : "", nearest ? "'?)" : "");
+    return NULL;
+}
+
 static void read_test(struct json *test, struct paper_claim *claim)
 {
     struct json *of = json_object(test, "of"), *over = json_object(test, "over");
     claim->kind =
         (enum paper_kind)(PAPER_RATIO + json_word(test, "kind", "ratio|growth|value", -1));
     claim->statistic = (enum paper_statistic)json_word(test, "statistic", statistic_words, 0);
+    claim->column = column_of(test);
     claim->why = text_needed(test, "why");
     claim->low = json_number(test, "low", -INFINITY, -1e9, 1e9);
     claim->high = json_number(test, "high", INFINITY, -1e9, 1e9);

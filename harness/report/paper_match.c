@@ -32,6 +32,27 @@ static double figure_of(const struct result *result, enum paper_unit unit,
     return unit == PAPER_FPS ? 1 / seconds : seconds;
 }
 
+/* A row's cell with room for its values, all missing. */
+static struct paper_sample sample_of(struct arena *arena, const struct row *row, size_t rounds)
+{
+    const struct cell *cell = &row->seen->cell;
+    struct paper_sample sample = {.cell = {.scene = cell->scene,
+                                           .method = row->method,
+                                           .options = cell->options,
+                                           .has_lod = true,
+                                           .lod = cell->lod,
+                                           .trees = row->trees,
+                                           .width_px = cell->width_px,
+                                           .height_px = cell->height_px},
+                                  .seed = cell->seed,
+                                  .format = cell->format,
+                                  .row = row,
+                                  .values = ARENA_ARRAY(arena, double, rounds + 1)};
+    for (size_t r = 0; r < rounds; r++)
+        sample.values[r] = NAN;
+    return sample;
+}
+
 struct paper_sample *paper_samples(const struct book *book, enum paper_unit unit,
                                    enum paper_statistic statistic, size_t *rounds)
 {
@@ -42,28 +63,23 @@ struct paper_sample *paper_samples(const struct book *book, enum paper_unit unit
         if (book->run->results[i].repetition >= (int)*rounds)
             *rounds = (size_t)book->run->results[i].repetition + 1;
     for (size_t i = 0; i < book->rows_count; i++) {
-        const struct row *row = &book->rows[i];
-        const struct cell *cell = &row->seen->cell;
-        struct paper_sample *sample = &samples[i];
-        *sample = (struct paper_sample){.cell = {.scene = cell->scene,
-                                                 .method = row->method,
-                                                 .options = cell->options,
-                                                 .has_lod = true,
-                                                 .lod = cell->lod,
-                                                 .trees = row->trees,
-                                                 .width_px = cell->width_px,
-                                                 .height_px = cell->height_px},
-                                        .seed = cell->seed,
-                                        .format = cell->format,
-                                        .row = row,
-                                        .values = ARENA_ARRAY(book->arena, double, *rounds + 1)};
-        for (size_t r = 0; r < *rounds; r++)
-            sample->values[r] = NAN;
-        const struct summary *summary = row->summary;
+        const struct summary *summary = book->rows[i].summary;
+        samples[i] = sample_of(book->arena, &book->rows[i], *rounds);
         for (size_t k = 0; k < summary->repetitions + summary->failures; k++)
             if (summary->results[k]->repetition >= 0)
-                sample->values[summary->results[k]->repetition] =
+                samples[i].values[summary->results[k]->repetition] =
                     figure_of(summary->results[k], unit, statistic);
+    }
+    return samples;
+}
+
+struct paper_sample *paper_samples_column(const struct book *book, const struct column *column)
+{
+    struct paper_sample *samples =
+        ARENA_ARRAY(book->arena, struct paper_sample, book->rows_count + 1);
+    for (size_t i = 0; i < book->rows_count; i++) {
+        samples[i] = sample_of(book->arena, &book->rows[i], 1);
+        samples[i].values[0] = book->rows[i].values[column - column_table];
     }
     return samples;
 }
