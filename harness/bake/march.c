@@ -330,9 +330,10 @@ static const struct march_far *far_of(const struct march *march, const struct ma
     return far;
 }
 
-static void tile_draw(const struct march *march, const struct march_view *picture,
-                      const struct tiles *tiles, const struct cull_list *list, size_t tile,
-                      struct canvas *canvas, float *pixels)
+/* Returns the lookups of its rays. */
+static uint64_t tile_draw(const struct march *march, const struct march_view *picture,
+                          const struct tiles *tiles, const struct cull_list *list, size_t tile,
+                          struct canvas *canvas, float *pixels)
 {
     canvas_begin(canvas, march, tiles, picture->view, tile);
     for (uint32_t at = march->tile_first[tile];
@@ -348,6 +349,10 @@ static void tile_draw(const struct march *march, const struct march_view *pictur
         canvas_splat(canvas, &splat, &picture->rays);
     }
     canvas_end(canvas, march->options.stop, picture->view, pixels);
+    uint64_t lookups = 0;
+    for (int block = 0; block < canvas->blocks_count; block++)
+        lookups += canvas->blocks[block].lookups;
+    return lookups;
 }
 
 enum status march_draw(struct workspace *workspace, struct march *march, const struct view *view,
@@ -366,14 +371,18 @@ enum status march_draw(struct workspace *workspace, struct march *march, const s
     backdrop_cpu_begin(workspace, march->backdrop, view);
     struct cull_list list = cull_view(march->cull, view, CULL_FRONT_TO_BACK);
     bin(workspace, march, &picture, &tiles, &list);
-#pragma omp parallel num_threads(workspace->threads)
+    uint64_t lookups = 0;
+#pragma omp parallel num_threads(workspace->threads) reduction(+ : lookups)
     {
         struct canvas canvas;
         canvas.fars = march->fars + fars_of_thread(march) * (size_t)omp_get_thread_num();
         memset(canvas.fars, 0, fars_of_thread(march) * sizeof *canvas.fars);
 #pragma omp for schedule(dynamic, 1)
         for (size_t tile = 0; tile < tiles.count; tile++)
-            tile_draw(march, &picture, &tiles, &list, tile, &canvas, target->pixels);
+            lookups += tile_draw(march, &picture, &tiles, &list, tile, &canvas, target->pixels);
     }
+    workspace->tally.lookups += lookups;
+    workspace->tally.bytes +=
+        march->scene->instances_count * 4 * sizeof(float) + list.count * sizeof *march->trees;
     return STATUS_OK;
 }

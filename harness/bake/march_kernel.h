@@ -145,11 +145,13 @@ static inline bool march_lanes(const struct march_job *job, struct march_rays *r
     lanes rgb[3];
     for (int c = 0; c < 3; c++)
         rgb[c] = lanes_load(rays->rgb[c] + first);
+    int lookups = 0;
     do {
         lanes length = lanes_min(step, end - at), middle = at + 0.5f * length;
         lanes_int cell = cells_at(job, ray, middle, alive);
         lanes_int behind = cell - VOXELS_FIRST;
         lanes_mask full = lanes_both(lanes_int_less((lanes_int){0} - 1, behind), alive);
+        lookups += lanes_count(alive) + 2 * lanes_count(full);
         if (lanes_any(full)) {
             struct lanes_sample sample = sample_voxels(job, behind << 2, full);
             lanes pass = lanes_fade(sample.depth * length * job->speed);
@@ -162,6 +164,7 @@ static inline bool march_lanes(const struct march_job *job, struct march_rays *r
         at = lanes_pick(full, at + step, lanes_max(at + step, far));
         alive = lanes_both(lanes_both(lanes_less(at, end), lanes_less(stop, left)), alive);
     } while (lanes_any(alive));
+    rays->lookups += (uint64_t)lookups;
     lanes_store(rays->left + first, left);
     for (int c = 0; c < 3; c++)
         lanes_store(rays->rgb[c] + first, rgb[c]);

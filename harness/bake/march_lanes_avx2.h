@@ -35,6 +35,10 @@ static inline bool lanes_any(lanes_mask mask)
 {
     return _mm256_movemask_ps((__m256)mask) != 0;
 }
+static inline int lanes_count(lanes_mask mask)
+{
+    return __builtin_popcount((unsigned)_mm256_movemask_ps((__m256)mask));
+}
 static inline lanes lanes_min(lanes a, lanes b)
 {
     return (lanes)_mm256_min_ps((__m256)a, (__m256)b);

@@ -35,6 +35,10 @@ static inline bool lanes_any(lanes_mask mask)
 {
     return mask != 0;
 }
+static inline int lanes_count(lanes_mask mask)
+{
+    return __builtin_popcount(mask);
+}
 static inline lanes lanes_min(lanes a, lanes b)
 {
     return (lanes)_mm512_min_ps((__m512)a, (__m512)b);

@@ -35,6 +35,10 @@ static inline bool lanes_any(lanes_mask mask)
 {
     return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
+static inline int lanes_count(lanes_mask mask)
+{
+    return -(mask[0] + mask[1] + mask[2] + mask[3]);
+}
 static inline lanes lanes_min(lanes a, lanes b)
 {
     return lanes_pick(lanes_less(a, b), a, b);

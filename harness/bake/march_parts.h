@@ -11,6 +11,7 @@ struct march_rays {
     float left[MARCH_RAYS]; /* transmittance */
     float rgb[3][MARCH_RAYS];
     float depths_m[MARCH_RAYS]; /* of what is behind the trees, along the view */
+    uint64_t lookups;           /* a cell is one, a voxel two, for each ray */
 } __attribute__((aligned(64)));
 
 /* x' M y of a packed matrix: factors[0] + sum of its five entries of 6 bits, each by its factor. */
