@@ -2,12 +2,15 @@
  *
  * Light is baked for trees turned by steps of the world's light, so that a picture is what was lit
  * and nothing is computed a fragment; each step needs textures of its own, front and back: with 64
- * slices of 128 texels about 40 MB a step and species. When the sun moves all is baked anew. */
+ * slices of 128 texels about 40 MB a step and species. When the sun moves all is baked anew.
+ *
+ * With source=voxels or opaque the slices are layers of a volume that is coloured from pictures
+ * with depth around each plant: Babahenini and Djedi 2006, Seitz and Dyer 1997. */
 #include "bake/stack.h"
 #include "method/method.h"
 
 struct options {
-    int path, criterion, slices, resolution, turns, ground, cut, filter, samples;
+    int path, source, views, criterion, slices, resolution, turns, ground, cut, filter, samples;
     float gap, parallax, texel, near;
     bool interpolate, smooth;
 };
@@ -16,6 +19,9 @@ struct options {
 static const struct option table[] = {
     OPTION_WORD(struct options, path, 1, "naive|fast",
                 "naive: as published, every slice a whole trilinear quad, a draw a tree"),
+    OPTION_WORD(struct options, source, 0, "mesh|voxels|opaque",
+                "voxels: from pictures, a layer a slice, resolution (to 256) a side; opaque: as published, opacity 1"),
+    OPTION(struct options, views, 12, 1, 64, "", "pictures around a plant that voxels are coloured from"),
     OPTION(struct options, slices, 64, 1, 512, "", "slices along each of the three directions"),
     OPTION(struct options, resolution, 128, 8, 512, "px", "texels along a picture's longer side"),
     OPTION_WORD(struct options, criterion, 1, "c1|c2|both|none",
@@ -52,18 +58,21 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     bool fast = options->path == 1;
     bool c1 = options->criterion == CRITERION_C1 || options->criterion == CRITERION_BOTH;
     bool c2 = options->criterion == CRITERION_C2 || options->criterion == CRITERION_BOTH;
+    bool voxels = options->source > 0;
     struct stack_request request = {
         .bake = {.directions_count = 3,
                  .directions = slices_axes,
-                 .count = options->slices,
+                 .count = voxels ? options->resolution : options->slices,
+                 .views = voxels ? (size_t)options->views : 0,
+                 .binary = options->source == 2,
                  .samples = options->samples,
                  .cut = options->cut ? SLICES_CENTROID : SLICES_CLIP,
                  .parts = SLICES_BARK | SLICES_LEAVES},
         .resolution_px = options->resolution,
-        .square = !fast,
+        .square = !fast || voxels,
         .trilinear = !fast || options->filter == 0,
         .rectangles = fast,
-        .near_radii = fast && options->ground == GROUND_UPRIGHT ? options->near : 0,
+        .near_radii = fast && !voxels && options->ground == GROUND_UPRIGHT ? options->near : 0,
         .each = !fast,
         .interpolate = options->interpolate,
         .smooth = options->smooth,

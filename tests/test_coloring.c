@@ -31,7 +31,8 @@ static struct coloring colored(struct arena *arena, struct plant *plant, size_t 
 {
     struct error error = {0};
     struct coloring coloring;
-    if (coloring_of_plant(arena, plant, views, &request, 2, &coloring, &error) != STATUS_OK)
+    struct coloring_shots shots = {views, 2 * request.grid, 0.005f};
+    if (coloring_of_plant(arena, plant, &shots, &request, 2, &coloring, &error) != STATUS_OK)
         fail_msg("%s", error.text);
     size_t cells = (size_t)request.grid * (size_t)request.grid * (size_t)request.grid;
     assert_int_equal(coloring.voxels_count + coloring.unseen_count + coloring.clear_count +
@@ -203,7 +204,9 @@ static void test_agreement__carves_what_a_view_sees_in_another_color(void **stat
     struct error error = {0};
     struct images capture;
     struct plant *plant = plant_from_mesh(arena, "cube", &cube.mesh);
-    assert_int_equal(coloring_trace(arena, plant, 12, 64, 2, &capture, &error), STATUS_OK);
+    assert_int_equal(
+        coloring_trace(arena, plant, &(struct coloring_shots){12, 64, 0.005f}, 2, &capture, &error),
+        STATUS_OK);
     float(*lie)[3] = arena_alloc(arena, 64 * 64, sizeof *lie);
     for (int i = 0; i < 64 * 64; i++)
         lie[i][0] = 1, lie[i][1] = lie[i][2] = 0.5f;
@@ -294,7 +297,8 @@ static void test_coloring__is_the_same_from_any_number_of_threads(void **state)
     struct coloring made[2];
     for (int k = 0; k < 2; k++) {
         struct coloring_request request = usual(32);
-        assert_int_equal(coloring_of_plant(arena, plant_of(arena, "poplar", NULL), 6, &request,
+        assert_int_equal(coloring_of_plant(arena, plant_of(arena, "poplar", NULL),
+                                           &(struct coloring_shots){6, 64, 0.005f}, &request,
                                            1 + 2 * k, &made[k], NULL),
                          STATUS_OK);
     }
@@ -317,7 +321,8 @@ static void test_images__of_a_plant_give_the_voxels_of_the_plant(void **state)
     for (size_t count = 6; count <= 12; count += 6) {
         struct images capture;
         struct plant *plant = plant_of(arena, "poplar", NULL);
-        if (coloring_trace(arena, plant, count, 96, 2, &capture, &error) != STATUS_OK ||
+        if (coloring_trace(arena, plant, &(struct coloring_shots){count, 96, 0.005f}, 2, &capture,
+                           &error) != STATUS_OK ||
             images_write(folder, &capture, &error) != STATUS_OK)
             fail_msg("%s", error.text);
         struct images images;
@@ -338,8 +343,10 @@ static void test_images__of_a_plant_give_the_voxels_of_the_plant(void **state)
                     (loaded.cells[i] < COLORING_FIRST ? loaded.cells[i] : COLORING_FIRST);
         assert_true(count == 6 ? same == cells : same >= cells - cells / 2000);
         if (count == 6)
-            assert_memory_equal(direct.voxels, loaded.voxels,
-                                direct.voxels_count * sizeof *direct.voxels);
+            for (size_t i = 0; i < direct.voxels_count; i++) {
+                direct.voxels[i].leaf = 1; /* the files do not say */
+                assert_memory_equal(&direct.voxels[i], &loaded.voxels[i], sizeof *loaded.voxels);
+            }
         /* The plant of the folder has a rectangle a voxel. */
         struct plant *from = plant_images(arena, folder, &request);
         const struct mesh *mesh = NULL;
@@ -424,6 +431,7 @@ static void test_directions__are_unit_apart_and_balanced(void **state)
 
 int main(void)
 {
+    setenv("TREELINE_CACHE", "off", 1);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ball__is_rebuilt_the_better_the_more_views_see_it),
         cmocka_unit_test(test_ball__is_rebuilt_the_better_the_finer_the_grid),

@@ -11,17 +11,23 @@
  * lattice (Swinbank and Purser 2006, doi:10.1256/qj.05.227). */
 void coloring_direction(size_t count, size_t index, float direction[3]);
 
-/* count (1..COLORING_VIEWS_MAX) orthographic pictures of the plant's albedo and depth, pixels
- * (1..4096) a side, each framing the plant's box, which holds it with
- * a hundredth to spare; capture has no paths. STATUS_UNAVAILABLE without Embree; the plant's
- * errors pass through. */
-enum status coloring_trace(struct arena *arena, struct plant *plant, size_t count, int pixels,
-                           int threads, struct images *capture, struct error *error);
+struct coloring_shots {
+    size_t count; /* 1..COLORING_VIEWS_MAX */
+    int pixels;   /* a side, 1..4096; two for each voxel's side are enough */
+    float spare;  /* how far the box that the pictures frame reaches beyond the plant's on each
+                     side, relative to that; above 0 */
+};
 
-/* The plant's box coloured from count views, two pixels for each voxel's side. request: box is set
- * here. */
-enum status coloring_of_plant(struct arena *arena, struct plant *plant, size_t count,
-                              struct coloring_request *request, int threads,
+/* Orthographic pictures of the plant's albedo and depth; capture has no paths. STATUS_UNAVAILABLE
+ * without Embree; the plant's errors pass through. */
+enum status coloring_trace(struct arena *arena, struct plant *plant,
+                           const struct coloring_shots *shots, int threads, struct images *capture,
+                           struct error *error);
+
+/* The box of the shots coloured, whatever request's is, or taken from the disk cache. */
+enum status coloring_of_plant(struct arena *arena, struct plant *plant,
+                              const struct coloring_shots *shots,
+                              const struct coloring_request *request, int threads,
                               struct coloring *coloring, struct error *error);
 
 #endif

@@ -2,14 +2,16 @@
 #include "bake/slices.h"
 
 #include "bake/slices_bake.h"
+#include "bake/slices_coloring.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "plant/coloring.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Changes whenever the same request would bake other bytes. */
-enum { SLICES_VERSION = 2, DIRECTIONS_MOST = 64 };
+enum { SLICES_VERSION = 3, DIRECTIONS_MOST = 64 };
 
 const float slices_axes[3][3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
 
@@ -35,6 +37,8 @@ static enum status check(const struct slices_request *request, struct error *err
         status = in_range("samples", request->samples, 1, 8, error);
     if (status == STATUS_OK)
         status = in_range("lights", (long)request->lights_count, 0, SLICES_LIGHTS, error);
+    if (status == STATUS_OK)
+        status = in_range("views", (long)request->views, 0, COLORING_VIEWS_MAX, error);
     for (size_t i = 0; status == STATUS_OK && i < request->directions_count; i++) {
         const float *d = request->directions[i];
         float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
@@ -48,8 +52,9 @@ static enum status check(const struct slices_request *request, struct error *err
 
 static uint64_t key_of(uint64_t key, const struct slices_request *request)
 {
-    const int values[] = {SLICES_VERSION,   request->width_px, request->height_px, request->count,
-                          request->samples, (int)request->cut, (int)request->parts};
+    const int values[] = {SLICES_VERSION,      request->width_px,   request->height_px,
+                          request->count,      request->samples,    (int)request->cut,
+                          (int)request->parts, (int)request->views, request->binary};
     key = hash_bytes(hash_text(key, "slices"), values, sizeof values);
     return hash_bytes(key, request->directions, request->directions_count * sizeof(float[3]));
 }
@@ -129,11 +134,14 @@ enum status slices_create(struct arena *arena, struct plant *plant,
     key = key_of(key, request);
     if (request->lights_count == 0 && (*slices = cached_slices(arena, key, request)) != NULL)
         return STATUS_OK;
+    struct slices *made = ARENA_NEW(arena, struct slices);
     status = plant_mesh(plant, &mesh, error);
+    if (status == STATUS_OK && request->views > 0)
+        status = slices_coloring(arena, plant, request, threads, made, error);
+    else if (status == STATUS_OK)
+        slices_bake(arena, mesh, request, threads, made);
     if (status != STATUS_OK)
         return status;
-    struct slices *made = ARENA_NEW(arena, struct slices);
-    slices_bake(arena, mesh, request, threads, made);
     if (request->lights_count == 0)
         cache_slices(key, made);
     *slices = made;

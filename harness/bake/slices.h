@@ -48,6 +48,11 @@ struct slices_request {
     int samples;                  /* along a texel's side, 1..8 */
     enum slices_cut cut;
     unsigned parts; /* SLICES_BARK | SLICES_LEAVES */
+    /* 0: from the mesh. 1..64: from so many pictures around the plant, by voxel colouring; then
+     * width_px and height_px are count, directions are axes, parts are both and cut and samples do
+     * not matter. */
+    size_t views;
+    bool binary; /* with views: a coloured voxel is opaque */
     /* 0..SLICES_LIGHTS; what is lit is not kept on disk: baking is as fast. */
     size_t lights_count;
     const struct slices_light *lights;

@@ -26,6 +26,7 @@ static enum status size_of(struct workspace *workspace, struct arena *scratch, s
     struct slices_request small = *bake;
     const struct slices *box;
     small.width_px = small.height_px = small.count = small.samples = 1;
+    small.views = 0;
     enum status status =
         slices_create(scratch, plant, &small, workspace->threads, &box, workspace->error);
     if (status != STATUS_OK)

@@ -71,11 +71,10 @@ static enum status make_views(struct arena *arena, const struct request *request
 {
     struct plant *plant = NULL;
     struct images images;
-    int threads = clock_cpu_count();
+    struct coloring_shots shots = {(size_t)request->views, request->pixels, 0.005f};
     enum status status = make_plant(arena, request->plant, &plant, error);
     if (status == STATUS_OK)
-        status = coloring_trace(arena, plant, (size_t)request->views, request->pixels, threads,
-                                &images, error);
+        status = coloring_trace(arena, plant, &shots, clock_cpu_count(), &images, error);
     if (status == STATUS_OK && request->folder)
         status = images_write(request->folder, &images, error);
     if (status != STATUS_OK)

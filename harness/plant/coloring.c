@@ -9,9 +9,10 @@ struct gathered {
     uint32_t cell, hits, passes, views;
     uint32_t view_hits, view_passes, view_blocked; /* rays of the view at hand */
     float view_color[3], view_m2;
-    float color[3], normal[3], point_m[3]; /* sums over hits */
-    float means[3], squares[3];            /* sums of the views' mean colours */
-    float shadows, facings;                /* sums over views of area seen x |cosine|, cosine^2 */
+    float color[3], normal[3], point_m[3], leaf; /* sums over hits */
+    float means[3], squares[3];                  /* sums of the views' mean colours */
+    float shadows, facings; /* sums over views of area seen x |cosine|, cosine^2 */
+    float chords_m;         /* sum over rays */
     bool carved;
 };
 
@@ -162,6 +163,8 @@ static void gather_surface(const struct volume *volume, const struct depth_view 
                 to->point_m[i] += point[i];
                 to->normal[i] += facing < 0 ? -normal[i] : normal[i];
             }
+            size_t pixel = (size_t)y * (size_t)view->width_px + (size_t)x;
+            to->leaf += view->leaf ? view->leaf[pixel] : 1;
             to->hits++;
         }
 }
@@ -287,32 +290,51 @@ static void gather_passes(const struct volume *volume, const struct depth_view *
         }
 }
 
-/* The cosine between a view's ray to a voxel and the mean normal there, times the ray's length for
- * a depth of 1. */
-static float cosine(const struct depth_view *view, const struct gathered *of)
+/* A view's ray to the middle of a voxel's surface, of length 1 along forward. */
+static void ray_to(const struct depth_view *view, const struct gathered *of, float ray[3])
 {
-    float hits = (float)of->hits, along = 0, depth = 0, length2 = 0, ray[3];
+    float depth = 0;
     for (int i = 0; i < 3; i++) {
-        ray[i] = view->pinhole ? of->point_m[i] / hits - view->position_m[i] : view->forward[i];
+        ray[i] = view->pinhole ? of->point_m[i] / (float)of->hits - view->position_m[i]
+                               : view->forward[i];
         depth += ray[i] * view->forward[i];
     }
+    for (int i = 0; i < 3; i++)
+        ray[i] /= depth;
+}
+
+/* The cosine between a ray and the mean normal of a voxel, times the ray's length. */
+static float cosine(const struct gathered *of, const float ray[3])
+{
+    float along = 0, length2 = 0;
     for (int i = 0; i < 3; i++) {
-        along += ray[i] * of->normal[i] / depth;
+        along += ray[i] * of->normal[i];
         length2 += of->normal[i] * of->normal[i];
     }
     return length2 > 0 ? along / sqrtf(length2) : -1;
 }
 
+/* Mean length of the parallels to a ray inside of a voxel: its volume over its shadow. */
+static float chord_m(const struct volume *volume, const float ray[3])
+{
+    const float *v = volume->voxel_m;
+    float length = sqrtf(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
+    return length / (fabsf(ray[0]) / v[0] + fabsf(ray[1]) / v[1] + fabsf(ray[2]) / v[2]);
+}
+
 /* Adds the view at hand to a voxel's statistics. A view sees the surface where rays end, or where
  * they pass and the surface faces it; an area A then shows A |cosine|, less what is blocked before
  * it, and A is the least squares' over the views. */
-static void gather_end(const struct coloring_request *request, const struct depth_view *view,
-                       struct gathered *of)
+static void gather_end(const struct coloring_request *request, const struct volume *volume,
+                       const struct depth_view *view, struct gathered *of)
 {
     uint32_t rays = of->view_hits + of->view_passes;
+    float ray[3];
+    ray_to(view, of, ray);
     if (rays >= 4 && (float)of->view_passes > request->see_through * (float)rays)
         of->carved = true;
-    float slant = rays > 0 ? cosine(view, of) : 0;
+    float slant = rays > 0 ? cosine(of, ray) : 0;
+    of->chords_m += (float)rays * chord_m(volume, ray);
     if (of->view_hits > 0 || slant < 0) { /* never where no ray arrives */
         of->shadows += of->view_m2 * fabsf(slant);
         of->facings += slant * slant * (float)rays / (float)(rays + of->view_blocked);
@@ -343,12 +365,14 @@ static struct colored_voxel voxel_of(const struct coloring_request *request,
                                      const struct gathered *of)
 {
     float hits = (float)of->hits, share = hits / (hits + (float)of->passes);
-    struct colored_voxel voxel = {.cell = of->cell, .opacity = request->binary ? 1 : share};
+    struct colored_voxel voxel = {
+        .cell = of->cell, .opacity = request->binary ? 1 : share, .leaf = of->leaf / hits};
     for (int i = 0; i < 3; i++) {
         voxel.color[i] = fminf(fmaxf(of->color[i] / hits, 0), 1);
         voxel.normal[i] = of->normal[i] / hits;
         voxel.position_m[i] = of->point_m[i] / hits;
     }
+    voxel.chord_m = of->chords_m / (hits + (float)of->passes);
     voxel.area_m2 = of->facings > 0 ? of->shadows / of->facings : 0;
     return voxel;
 }
@@ -371,7 +395,7 @@ void coloring_build(struct arena *arena, const struct depth_view *views, size_t 
         gather_color(&volume, &views[v]);
         gather_passes(&volume, &views[v]);
         for (size_t i = 0; i < volume.count; i++)
-            gather_end(request, &views[v], &volume.gathered[i]);
+            gather_end(request, &volume, &views[v], &volume.gathered[i]);
     }
     *coloring = (struct coloring){.grid = request->grid, .cells = volume.cells};
     memcpy(coloring->minimum_m, volume.minimum_m, sizeof volume.minimum_m);

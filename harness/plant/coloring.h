@@ -28,6 +28,8 @@ struct depth_view {
     int width_px, height_px;
     const float (*color)[3]; /* height x width, linear RGB; only looked at where depth is finite */
     const float *depth_m;    /* height x width; INFINITY: nothing there */
+    const float *leaf;       /* height x width: 1 thin as a leaf, 0 the skin of something solid;
+                                NULL: all 1 */
 };
 
 struct coloring_request {
@@ -45,10 +47,13 @@ enum { COLORING_UNSEEN, COLORING_CLEAR, COLORING_CARVED, COLORING_FIRST };
 
 struct colored_voxel {
     uint32_t cell;
-    float color[3], opacity;
+    float color[3], opacity, leaf;
     float normal[3];     /* mean, of length at most 1; either sign where both sides were seen */
     float position_m[3]; /* mean of the points that were seen */
     float area_m2;       /* of the surface inside, as far as it is seen */
+    float chord_m;       /* mean length of the rays' way through the voxel, were none to end: what
+                            hides opacity on that way hides 1 - (1 - opacity)^(w / chord_m) on
+                            another of w metres */
 };
 
 struct coloring {
