@@ -213,10 +213,10 @@ static enum status bench_run(struct arena *arena, int argc, char **argv, struct 
     status = traced_scene_build(arena, bench->scene, bench->threads, &bench->traced, error);
     if (status)
         return status;
-    printf("%s, %zu trees, %d x %d px, %d samples, %d threads, %s: built in %.2f s, %zu MiB\n",
+    printf("%s, %zu trees, %d x %d px, %d samples, %d threads, %s: built in %.2f s\n",
            bench->scene->name, bench->scene->instances_count, bench->view.width_px,
            bench->view.height_px, bench->samples, bench->threads, embree_version(),
-           clock_wall_seconds() - start, embree_bytes(bench->traced.embree) >> 20);
+           clock_wall_seconds() - start);
     points_make(arena, bench);
     status = bench_ratio(bench, rounds, error);
     return status ? status : bench_error(bench, error);

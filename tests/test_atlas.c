@@ -19,6 +19,33 @@ static void random_direction(struct random *random, float v[3])
     v[0] = r * sinf(angle), v[1] = y, v[2] = r * cosf(angle);
 }
 
+/* D of a unit L from the moments: |N.L| by its best quadratic, max(0, N.L) half of it and half N.L.
+ */
+static float light_of_moments(const float moments[LIGHT_MOMENTS], const float sun[3])
+{
+    double sum = 0, mixed = 0;
+    for (int i = 0; i < 3; i++)
+        sum += (3 + 15 * (double)sun[i] * sun[i]) / 16 * moments[i] + 0.5 * sun[i] * moments[6 + i];
+    mixed += (double)sun[0] * sun[1] * moments[3] + (double)sun[0] * sun[2] * moments[4];
+    mixed += (double)sun[1] * sun[2] * moments[5];
+    return (float)(sum + 15.0 / 8 * mixed);
+}
+
+/* The same from channels, as the shaders compute it. */
+static float light_decode(const struct light_basis *basis, const float channels[LIGHT_CHANNELS],
+                          const float sun[3])
+{
+    float x = sun[0], y = sun[1], z = sun[2];
+    const float q[LIGHT_TERMS] = {1, x * x, y * y, z * z, x * y, x * z, y * z, x, y, z};
+    float sum = 0;
+    for (int k = 0; k <= LIGHT_CHANNELS; k++) {
+        float factor = k ? channels[k - 1] : 1;
+        for (int i = 0; i < LIGHT_TERMS; i++)
+            sum += factor * basis->row[k][i] * q[i];
+    }
+    return sum;
+}
+
 /* The largest angle from a random direction (above the horizon when upper) to the nearest picture,
  * rad. */
 static double largest_gap(enum views_layout layout, size_t side, bool upper)

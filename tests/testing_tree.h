@@ -106,7 +106,7 @@ static inline struct scene *tree_scene(struct arena *arena, struct plant *plant,
                             .fog = {{0.5f, 0.55f, 0.6f}, 0.02f},
                             .hash = 1};
     scene->species = ARENA_NEW(arena, struct species);
-    *scene->species = (struct species){plant_name(plant), plant, 1, 1, 1};
+    *scene->species = (struct species){"tree", plant, 1, 1, 1};
     scene->instances = ARENA_ARRAY(arena, struct instance, trees + 1);
     for (size_t i = 0; i < trees; i++)
         scene->instances[i].scale = 1;

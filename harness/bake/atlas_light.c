@@ -18,15 +18,6 @@ static void response(const float sun[3], double b[N])
     b[5] = 15.0 / 8 * sun[1] * sun[2];
 }
 
-float light_of_moments(const float moments[N], const float sun[3])
-{
-    double b[N], sum = 0;
-    response(sun, b);
-    for (int i = 0; i < N; i++)
-        sum += b[i] * moments[i];
-    return (float)sum;
-}
-
 void light_moments_add(float moments[N], const float normal[3], int one_sided, float weight)
 {
     float w = one_sided ? 0.5f * weight : weight, n = one_sided ? weight : 0;
@@ -196,18 +187,4 @@ void light_encode(const struct light_basis *basis, const float moments[N],
             sum += basis->encode[k][i] * (moments[i] - basis->mean[i]);
         channels[k] = fminf(fmaxf(sum, 0), 1);
     }
-}
-
-float light_decode(const struct light_basis *basis, const float channels[LIGHT_CHANNELS],
-                   const float sun[3])
-{
-    float x = sun[0], y = sun[1], z = sun[2];
-    const float q[LIGHT_TERMS] = {1, x * x, y * y, z * z, x * y, x * z, y * z, x, y, z};
-    float sum = 0;
-    for (int k = 0; k <= LIGHT_CHANNELS; k++) {
-        float factor = k ? channels[k - 1] : 1;
-        for (int i = 0; i < LIGHT_TERMS; i++)
-            sum += factor * basis->row[k][i] * q[i];
-    }
-    return sum;
 }

@@ -43,9 +43,4 @@ void light_basis_fit(const struct light_sums *sums, struct light_basis *basis);
 void light_encode(const struct light_basis *basis, const float moments[LIGHT_MOMENTS],
                   float channels[LIGHT_CHANNELS]);
 
-/* D of a unit L from channels (what the shaders compute), and from the moments themselves. */
-float light_decode(const struct light_basis *basis, const float channels[LIGHT_CHANNELS],
-                   const float sun[3]);
-float light_of_moments(const float moments[LIGHT_MOMENTS], const float sun[3]);
-
 #endif

@@ -183,11 +183,6 @@ enum status embree_commit(struct embree *embree, struct error *error)
     return device_status(embree, "building the instances", error);
 }
 
-size_t embree_bytes(const struct embree *embree)
-{
-    return __atomic_load_n(&embree->bytes, __ATOMIC_RELAXED);
-}
-
 static void set_valid(int valid[EMBREE_LANES], int count)
 {
     for (int i = 0; i < EMBREE_LANES; i++)

@@ -63,8 +63,6 @@ enum status embree_add_mesh(struct embree *embree, const struct embree_mesh *mes
 /* to_world: 3 x 4, column-major. Errors are told by embree_commit. */
 void embree_add_instance(struct embree *embree, uint32_t mesh, const float to_world[12]);
 enum status embree_commit(struct embree *embree, struct error *error);
-/* Bytes that Embree holds now. */
-size_t embree_bytes(const struct embree *embree);
 
 /* The lanes [0, count) must have origin, near, direction and far. Directions need not be unit. The
  * result does not depend on time or threads. coherent: neighbouring lanes are likely to meet the
