@@ -351,6 +351,7 @@ static void test_plant__is_built_when_first_asked_for(void **state)
     struct plant *plant;
     const struct mesh *first, *second;
     assert_int_equal(plant_generated(arena, "poplar", NULL, &plant, NULL), STATUS_OK);
+    assert_string_equal(plant_name(plant), "poplar");
     assert_false(plant_cost(plant).built);
     size_t before = arena_used_bytes(arena);
     assert_int_equal(plant_mesh(plant, &first, NULL), STATUS_OK);

@@ -101,6 +101,11 @@ struct plant *plant_from_mesh(struct arena *arena, const char *name, const struc
     return plant;
 }
 
+const char *plant_name(const struct plant *plant)
+{
+    return plant->name;
+}
+
 struct plant_cost plant_cost(const struct plant *plant)
 {
     return plant->cost;

@@ -42,6 +42,7 @@ struct plant *plant_images(struct arena *arena, const char *folder,
  */
 struct plant *plant_from_mesh(struct arena *arena, const char *name, const struct mesh *mesh);
 
+const char *plant_name(const struct plant *plant);
 /* The generator's option table for documentation; NULL when the generator is unknown. */
 const struct option *plant_options(const char *generator);
 
