@@ -40,7 +40,8 @@ static const struct option table[] = {
     OPTION_WORD(struct options, filter, 1, "trilinear|bilinear", "bilinear: of one mip level a tree"),
     OPTION(struct options, texel, 1, 0.1, 16, "px", "largest size of minified texels on the picture"),
     OPTION(struct options, near, 1, 0, 16, "radii",
-           "upright trees closer to the eye than so many of their radii are drawn by their triangles; none on path=naive"),
+           "upright trees closer to the eye than so many of their radii are drawn by their triangles; "
+           "none on path=naive"),
     OPTION(struct options, interpolate, 0, 0, 1, "",
            "up to four times the slices, by interpolation, where the criterion asks for more"),
     OPTION(struct options, smooth, 0, 0, 1, "",
