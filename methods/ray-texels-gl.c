@@ -23,7 +23,7 @@ static const struct option table[] = {
                 "how leaves hide and are lit: by the second moments of their normals, or alike on all sides"),
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
     OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
-    OPTION(struct options, bias, 0.5, -4, 4, "", "added to the level of detail that a pixel asks for"),
+    OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
     OPTION_END,
 };
 /* clang-format on */

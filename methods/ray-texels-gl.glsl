@@ -76,6 +76,13 @@ vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both)
     return vec4(bytes(words.w) * (ambient + sun_radiance * max(diffuse, 0.0)), exp(-depth * span));
 }
 
+// Of what is behind the trees, along the view.
+float depth_at(ivec2 pixel)
+{
+    float z = 2.0 * texelFetch(depths, pixel, 0).r - 1.0;
+    return z < 1.0 ? depth_terms.y / (depth_terms.x + z) : 1e30;
+}
+
 void main()
 {
     vec2 pixel = floor(gl_FragCoord.xy);
@@ -83,8 +90,7 @@ void main()
     vec3 ray = axes * vec3(slope, 1.0);
     float stretch = length(ray);
     ray /= stretch;
-    float depth = 2.0 * texelFetch(depths, ivec2(pixel), 0).r - 1.0;
-    depth = depth < 1.0 ? depth_terms.y / (depth_terms.x + depth) : 1e30;
+    float depth = depth_at(ivec2(pixel));
 
     ivec2 at = ivec2(int(pixel.x), tiling.z - 1 - int(pixel.y));
     int tile = at.y / tiling.x * tiling.y + at.x / tiling.x;
@@ -119,10 +125,11 @@ void main()
         float weight = 1.0, along = 0.0, span;
         vec3 start = vec3(0.0);
         if ((place.w >> 30) != 0u) {
-            // Smaller than a pixel: spread over the four pixels around its middle.
+            // Smaller than a pixel: spread over the four pixels around its middle, also where their centres see the
+            // ground before its foot: two pixels farther up that is behind it.
             vec2 off = max(1.0 - abs(vec2(at) - where.xy), 0.0);
             weight = off.x * off.y * where.z;
-            span = where.w < depth ? 1.0 : 0.0;
+            span = where.w < max(depth, depth_at(ivec2(pixel.x, min(int(pixel.y) + 2, tiling.z - 1)))) ? 1.0 : 0.0;
         } else {
             vec3 slow = mix(u, vec3(1e-10), lessThan(abs(u), vec3(1e-10)));
             vec3 one = -where.xyz / slow, other = (size - where.xyz) / slow;

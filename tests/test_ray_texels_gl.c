@@ -8,16 +8,22 @@
 
 static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
 
-/* Layers of horizontal stripes that face +z, 16 m wide and high, each in a voxel of 1 m of its own:
- * half of each voxel's face is covered, so light passes each layer by half. */
+/* Up to three layers that face +z, 16 m wide and high, each in a voxel of 1 m of its own: stripes
+ * along x, stripes along y, stripes along x of half their width. Each covers half of every voxel's
+ * face, and of what each two leave open: light passes each layer by half. */
 static struct plant *layers(struct arena *arena, int count)
 {
-    enum { STRIPES = 16 };
+    enum { STRIPES = 32 };
     struct mesh *mesh = mesh_new(arena, MATERIAL_LEAF, 0.5f, (size_t)(2 * STRIPES * count));
     for (int layer = 0; layer < count; layer++)
-        for (int stripe = 0; stripe < STRIPES; stripe++) {
-            double z = count > 1 ? layer * (1 + 0.5 / (count - 1)) : 0, y = stripe;
-            double corners[4][3] = {{-8, y, z}, {8, y, z}, {8, y + 0.5, z}, {-8, y + 0.5, z}};
+        for (int stripe = 0; stripe < (layer == 2 ? STRIPES : STRIPES / 2); stripe++) {
+            double z = count > 1 ? layer * (1 + 0.5 / (count - 1)) : 0;
+            double low = layer == 2 ? 0.5 * stripe - 0.25 : stripe, x = 8, y = low;
+            double wide = layer == 2 ? 0.25 : 0.5;
+            double along_x[4][3] = {{-x, y, z}, {x, y, z}, {x, y + wide, z}, {-x, y + wide, z}};
+            x = low - 7.75;
+            double along_y[4][3] = {{x, 0, z}, {x + wide, 0, z}, {x + wide, 15.5, z}, {x, 15.5, z}};
+            double(*corners)[3] = layer == 1 ? along_y : along_x;
             mesh_quad(mesh, corners[0], corners[1], corners[2], corners[3]);
         }
     mesh_finish(arena, mesh);
@@ -39,7 +45,8 @@ static struct view layers_view(const struct scene *scene, float eye_z_m)
 static void expect_coverage(const struct frame *frame, double coverage)
 {
     for (int i = 0; i < TREE_PIXELS; i++)
-        if (fabs(frame->rgba[4 * i + 3] - coverage) > 0.004)
+        if (fabs(frame->rgba[4 * i + 3] - coverage) >
+            0.012) /* borders differ, and the plant is matched as a whole */
             fail_msg("pixel %d: coverage %g, not %g", i, (double)frame->rgba[4 * i + 3], coverage);
 }
 
@@ -49,7 +56,7 @@ static void test_ray_texels_gl__each_layer_lets_half_of_the_light_through(void *
     struct arena *arena = arena_create(0);
     static const char *const options[] = {"resolution=16,stop=0", "resolution=16,stop=0,step=0.25",
                                           "resolution=16,stop=0,bias=-4"};
-    for (int count = 1; count <= 5; count += 2)
+    for (int count = 1; count <= 3; count++)
         for (int k = 0; k < 3; k++) {
             struct scene *scene = tree_scene(arena, layers(arena, count), 1, 0);
             struct view view = layers_view(scene, 100);
@@ -64,11 +71,11 @@ static void test_ray_texels_gl__an_eye_within_sees_what_is_before_it(void **stat
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    struct scene *scene = tree_scene(arena, layers(arena, 5), 1, 0);
-    struct view view = layers_view(scene, 2.25f); /* two layers and a half of one */
+    struct scene *scene = tree_scene(arena, layers(arena, 3), 1, 0);
+    struct view view = layers_view(scene, 1.25f); /* a layer and a half of one */
     struct frame *frame = tree_draw(arena, tree_method("ray-texels-gl"), "resolution=16,stop=0",
                                     scene, lit, &view, NULL);
-    expect_coverage(frame, 1 - pow(0.5, 2.5));
+    expect_coverage(frame, 1 - pow(0.5, 1.5));
     arena_destroy(arena);
 }
 
