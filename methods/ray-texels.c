@@ -14,7 +14,7 @@ static const struct option table[] = {
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
     OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
-    OPTION(struct options, tile, 16, 8, 64, "px", "side of the tiles that trees are binned to"),
+    OPTION(struct options, tile, 32, 8, 64, "px", "side of the tiles that trees are binned to"),
     OPTION_WORD(struct options, isa, 0, "auto|plain|avx2|avx512",
                 "the processor's vectors; another set than it has is drawn with plain C"),
     OPTION_END,

@@ -137,6 +137,15 @@ static void plane_row(const struct backdrop_cpu *backdrop, float x_px, float y_p
     }
 }
 
+/* The flat terrain is convex, and so is what a row sees of it: its ends decide. */
+static bool plane_fills_row(const struct backdrop_cpu *backdrop, float x_px, float y_px, int count)
+{
+    float depths_m[2] = {INFINITY, INFINITY}, unused[2][3] = {{0, 0, 0}, {0, 0, 0}};
+    plane_row(backdrop, x_px, y_px, 1, &depths_m[0], &unused[0]);
+    plane_row(backdrop, x_px + (float)(count - 1), y_px, 1, &depths_m[1], &unused[1]);
+    return isfinite(depths_m[0]) && isfinite(depths_m[1]);
+}
+
 /* The share of a pixel's square on the inner side of a line: a trapezoid, integrated. */
 static float share_inside(const float across[2], float inside_px)
 {
@@ -198,7 +207,9 @@ void backdrop_cpu_tile(const struct backdrop_cpu *backdrop, const struct backdro
         float *depths_m = tile->depths_m + row * tile->stride;
         float(*rgb)[3] = tile->rgb + row * tile->stride;
         float x_px = (float)tile->x_px, y_px = (float)(tile->y_px + row);
-        sky_row(&backdrop->scene->sky, &backdrop->rays, x_px, y_px, tile->width_px, depths_m, rgb);
+        if (!backdrop->flat || !plane_fills_row(backdrop, x_px, y_px, tile->width_px))
+            sky_row(&backdrop->scene->sky, &backdrop->rays, x_px, y_px, tile->width_px, depths_m,
+                    rgb);
         if (backdrop->flat)
             plane_row(backdrop, x_px, y_px, tile->width_px, depths_m, rgb);
         for (int border = 0; border < backdrop->borders_count; border++)
