@@ -9,8 +9,9 @@ struct options {
 /* clang-format off */
 static const struct option table[] = {
     OPTION(struct options, resolution, 128, 1, 512, "", "voxels along a plant's longest extent"),
-    OPTION_WORD(struct options, model, 0, "sggx|isotropic",
-                "how leaves hide and are lit: by the second moments of their normals, or alike on all sides"),
+    OPTION_WORD(struct options, model, 0, "sggx|isotropic|noma",
+                "how leaves hide: by second moments in every direction; by a scalar density "
+                "(Kajiya-Kay), lit alike on all sides; by Noma's opacities along three axes"),
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
     OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
@@ -52,6 +53,7 @@ const struct method ray_texels_method = {
     .name = "ray-texels",
     .summary = "rays marched through voxels of the plants, on the CPU",
     .source = "Kajiya and Kay 1989, doi:10.1145/74334.74361; Neyret 1998, doi:10.1109/2945.675652; "
+              "Noma 1995; "
               "Heitz et al. 2015, doi:10.1145/2766988; Senegas 2001",
     .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
     .options = table,

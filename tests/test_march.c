@@ -374,6 +374,28 @@ static void test_march__a_ball_of_leaves_covers_and_shines_as_traced(void **stat
     balls_check(1, 20000, 0.25, EFFECT_TWO_SIDED, 0.05);
 }
 
+/* A scalar density is the root mean square of the axes' where the mean over directions hides: of
+ * one flat leaf 1 / sqrt(3) in place of 1 / 2. */
+static void test_march__a_ball_of_leaves_covers_as_traced_by_every_model(void **state)
+{
+    (void)state;
+    static const double most[] = {
+        [MARCH_SGGX] = 1.05, [MARCH_ISOTROPIC] = 1.1547, [MARCH_NOMA] = 1.05};
+    struct world world = world_of_balls(1, 3000, 0.25);
+    double drawn[4], true_means[4];
+    means_of(traced(&world, EFFECT_TWO_SIDED), true_means);
+    for (enum march_model model = MARCH_SGGX; model <= MARCH_NOMA; model++) {
+        struct march_options options = usual;
+        options.model = model;
+        means_of(march_picture(&world, &options, EFFECT_TWO_SIDED, 2), drawn);
+        for (int c = 0; c < 4; c++)
+            if (!(drawn[c] / true_means[c] > 0.95 && drawn[c] / true_means[c] < most[model]))
+                fail_msg("model %d, channel %d: %g, reference %g", (int)model, c, drawn[c],
+                         true_means[c]);
+    }
+    arena_destroy(world.arena);
+}
+
 static void test_march__overlapping_trees_and_one_within_another_cover_as_traced(void **state)
 {
     (void)state;
@@ -466,6 +488,7 @@ int main(void)
         cmocka_unit_test(test_march__light_of_leaves_is_that_of_quadrature),
         cmocka_unit_test(test_march__every_instruction_set_gives_the_same_bits),
         cmocka_unit_test(test_march__a_ball_of_leaves_covers_and_shines_as_traced),
+        cmocka_unit_test(test_march__a_ball_of_leaves_covers_as_traced_by_every_model),
         cmocka_unit_test(test_march__overlapping_trees_and_one_within_another_cover_as_traced),
         cmocka_unit_test(test_march__light_along_each_axis_shines_as_traced),
         cmocka_unit_test(test_march__the_eye_within_a_crown_sees_as_traced),

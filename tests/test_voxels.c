@@ -195,6 +195,63 @@ static void test_voxels__a_pyramid_ends_in_one_voxel_and_an_empty_mesh_in_none(v
     arena_destroy(arena);
 }
 
+static void test_voxels__nomas_opacity_is_the_mean_over_pairs(void **state)
+{
+    (void)state;
+    const float steps[8] = {.1f, .2f, .3f, .4f, .5f, .6f, .7f, .8f};
+    const float full[8] = {1, 1, 1, 1, 1, 1, 1, 1}, none[8] = {0}, half[8] = {1, 0, 1, 0, 1, 0, 1};
+    assert_true(fabsf(voxel_noma(steps) - 0.65f) < 1e-6f);
+    assert_true(voxel_noma(full) == 1 && voxel_noma(none) == 0 && voxel_noma(half) == 1);
+    double printed = 0; /* the form in print: sums less products */
+    for (int k = 0; k < 8; k += 2)
+        printed += ((double)steps[k] + steps[k + 1] - (double)steps[k] * steps[k + 1]) / 4;
+    assert_true(fabs(printed - 0.65) < 1e-6);
+}
+
+/* Two levels of 2 x 2 x 2 and one voxels, each of its own depths along the axes. */
+static void test_voxels__nomas_pyramid_lets_through_the_mean_of_its_columns(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct random random = random_seed(3, 1);
+    const float white[3] = {1, 1, 1};
+    for (int n = 0; n < 50; n++) {
+        uint32_t cells[9];
+        struct voxel packed[9];
+        struct voxels voxels = {.albedo = {1, 1, 1}, .levels_count = 2, .voxels = packed};
+        voxels.levels[0] = (struct voxels_level){{2, 2, 2}, 1, cells};
+        voxels.levels[1] = (struct voxels_level){{1, 1, 1}, 2, cells + 8};
+        for (uint32_t k = 0; k < 8; k++) {
+            struct voxel_optics optics = {.extinction = 2 * random_float(&random), .evenness = 1};
+            optics.shape[0] = 0.2f + 0.2f * random_float(&random);
+            optics.shape[1] = 0.2f + 0.2f * random_float(&random);
+            optics.shape[3] = 0.1f;
+            cells[k] = k && random_below(&random, 4) == 0 ? 1 : VOXELS_FIRST + voxels.voxels_count;
+            if (cells[k] >= VOXELS_FIRST)
+                packed[voxels.voxels_count++] = voxel_pack(&optics, white);
+        }
+        cells[8] = VOXELS_FIRST + voxels.voxels_count;
+        packed[voxels.voxels_count++] = packed[0];
+        const struct voxels *noma = voxels_noma(arena, &voxels);
+        struct voxel_optics coarse = voxel_unpack(noma, cells[8] - VOXELS_FIRST);
+        assert_true(coarse.shape[3] == 0 && coarse.shape[4] == 0 && coarse.shape[5] == 0);
+        for (int axis = 0; axis < 3; axis++) {
+            double depths[8] = {0}, clear = 0;
+            for (int k = 0; k < 8; k++) { /* by the place of the column that the cell is in */
+                if (cells[k] < VOXELS_FIRST)
+                    continue;
+                struct voxel_optics fine = voxel_unpack(&voxels, cells[k] - VOXELS_FIRST);
+                depths[k & ~(1 << axis)] += fine.extinction * sqrt(fine.shape[axis]);
+            }
+            for (int k = 0; k < 8; k++)
+                clear += k & 1 << axis ? 0 : exp(-depths[k]) / 4;
+            double drawn = exp(-coarse.extinction * sqrt(fmax(coarse.shape[axis], 0)));
+            assert_true(fabs(drawn - clear) < 0.01);
+        }
+    }
+    arena_destroy(arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -203,6 +260,8 @@ int main(void)
         cmocka_unit_test(test_voxels__what_hides_a_ray_twice_counts_once_when_coarser),
         cmocka_unit_test(test_voxels__distances_are_those_of_brute_force),
         cmocka_unit_test(test_voxels__packing_keeps_what_a_picture_shows),
+        cmocka_unit_test(test_voxels__nomas_opacity_is_the_mean_over_pairs),
+        cmocka_unit_test(test_voxels__nomas_pyramid_lets_through_the_mean_of_its_columns),
         cmocka_unit_test(test_voxels__a_pyramid_ends_in_one_voxel_and_an_empty_mesh_in_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

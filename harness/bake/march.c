@@ -56,16 +56,19 @@ static void trees_fill(struct march *march, const struct scene *scene)
     }
 }
 
-static enum status species_fill(struct workspace *workspace, struct plant *plant, int resolution,
-                                struct march_species *species, struct cull_bound *bound)
+static enum status species_fill(struct workspace *workspace, struct plant *plant,
+                                const struct march_options *options, struct march_species *species,
+                                struct cull_bound *bound)
 {
     const struct mesh *mesh;
-    enum status status =
-        voxels_of_plant(workspace->arena, plant, resolution, &species->voxels, workspace->error);
+    enum status status = voxels_of_plant(workspace->arena, plant, options->resolution,
+                                         &species->voxels, workspace->error);
     if (!status)
         status = plant_mesh(plant, &mesh, workspace->error);
     if (status)
         return status;
+    if (options->model == MARCH_NOMA)
+        species->voxels = voxels_noma(workspace->arena, species->voxels);
     *bound = cull_bound_of(mesh);
     float square = 0;
     for (int i = 0; i < 3; i++) {
@@ -89,8 +92,8 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
     struct cull_bound *bounds =
         ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count);
     for (size_t i = 0; i < scene->species_count && !status; i++)
-        status = species_fill(workspace, scene->species[i].plant, options->resolution,
-                              &march->species[i], &bounds[i]);
+        status = species_fill(workspace, scene->species[i].plant, options, &march->species[i],
+                              &bounds[i]);
     if (status)
         return status;
     march->turns_count = MARCH_TURNS * scene->species_count;

@@ -10,7 +10,9 @@ struct march;
 
 enum march_model {
     MARCH_SGGX,      /* hides and is lit by the second moments of its normals */
-    MARCH_ISOTROPIC, /* as if the normals in a voxel pointed everywhere alike */
+    MARCH_ISOTROPIC, /* as if the normals in a voxel pointed everywhere alike: a scalar density d,
+                        transmittance exp(-d length) in every direction (Kajiya and Kay 1989) */
+    MARCH_NOMA,      /* hides by the opacities of voxels_noma, is lit as with sggx */
 };
 
 struct march_options {

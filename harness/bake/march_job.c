@@ -163,7 +163,7 @@ static void light_fill(const struct march_view *picture, const struct march_tree
     float toward_sun[3];
     to_plant(tree, picture->view->sun_direction, 1, toward_sun);
     struct march_form (*form)(const float[3], const float[3]) =
-        picture->options.model == MARCH_SGGX ? form_of : form_isotropic;
+        picture->options.model == MARCH_ISOTROPIC ? form_isotropic : form_of;
     job->hidden = form(toward_eye, toward_eye);
     job->seen = job->hidden;
     job->lit = form(toward_sun, toward_sun);

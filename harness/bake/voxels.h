@@ -54,6 +54,13 @@ struct voxels {
 enum status voxels_of_plant(struct arena *arena, struct plant *plant, int resolution,
                             const struct voxels **voxels, struct error *error);
 
+/* The same plant with Noma's directional opacities (1995): each voxel hides by its opacity along
+ * the three axes alone, and a coarser one's is 1 - the mean, over the four pairs of its cells along
+ * the axis, of (1 - r)(1 - r'), as if what is in one cell knew nothing of the next. Between the
+ * axes: the optical depths' root mean square, by the squared cosines. Light and cells stay as they
+ * are; cells are shared. */
+const struct voxels *voxels_noma(struct arena *arena, const struct voxels *voxels);
+
 /* A voxel unpacked, as the march does it. Matrices: xx, yy, zz, xy, xz, yz. */
 struct voxel_optics {
     float extinction, shape[6], normals[6], albedo[3], evenness, bark;

@@ -40,6 +40,8 @@ void voxel_grid_hidden(struct arena *arena, const struct voxel_grid *finest, dou
  * hide a part of their faces hide too much together; what is full stays opaque. */
 void voxel_grid_temper(struct arena *arena, const struct voxel_grid *grid, const double areas[3],
                        float powers[3]);
+/* Noma's opacity of eight cells, 0..1; 2 k and 2 k + 1 are a pair along the axis. */
+float voxel_noma(const float opacities[8]);
 /* Empty cells (0) become their Chebyshev distance to the nearest full one, at most 255; full ones
  * stay and must be VOXELS_FIRST or more. */
 void voxel_distances(const uint32_t size[3], uint32_t *cells);
