@@ -175,7 +175,8 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     }
     state->vertices = gl_vertex_array(gl);
     state->framebuffer = gl_framebuffer(gl);
-    const char *defines = state->options.model ? "FIRST 256u\nISOTROPIC 1\n" : "FIRST 256u\n";
+    const char *defines =
+        state->options.model ? "FIRST 256u\nPROBES 1\nISOTROPIC 1\n" : "FIRST 256u\nPROBES 1\n";
     enum status status = backdrop_prepare(workspace, scene, &state->backdrop);
     if (!status)
         status = prepare_volumes(workspace, state);
@@ -415,6 +416,25 @@ static void set_uniforms(struct workspace *workspace, const struct state *state,
                   state->options.step, workspace->effects & EFFECT_TWO_SIDED ? 0 : 1);
 }
 
+/* Where trees are in a row of tiles; up to GAP empty tiles between cost less than another draw. */
+static void draw_row(struct gl *gl, const struct tiles *tiles, int row, int height_px)
+{
+    enum { GAP = 3 };
+    const uint32_t *first = tiles->first + row * tiles->columns;
+    const int side = tiles->side_px, low_px = height_px - (row + 1) * side;
+    for (int x = 0; x < tiles->columns; x++) {
+        if (first[x + 1] == first[x])
+            continue;
+        int begin = x, end = x + 1;
+        for (; x < tiles->columns && x < end + GAP; x++)
+            if (first[x + 1] > first[x])
+                end = x + 1;
+        gl->Scissor(begin * side, low_px > 0 ? low_px : 0, (end - begin) * side,
+                    low_px > 0 ? side : side + low_px);
+        gl_draw_arrays(gl, GL_TRIANGLES, 0, 3, 1);
+    }
+}
+
 /* The target's colour without its depth, which the shader reads. */
 static void draw_trees(struct workspace *workspace, const struct state *state,
                        const struct view *view, const struct target *target)
@@ -431,7 +451,10 @@ static void draw_trees(struct workspace *workspace, const struct state *state,
     gl->Disable(GL_DEPTH_TEST);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    gl_draw_arrays(gl, GL_TRIANGLES, 0, 3, 1);
+    gl->Enable(GL_SCISSOR_TEST);
+    for (int row = 0; row < state->tiles->rows; row++)
+        draw_row(gl, state->tiles, row, view->height_px);
+    gl->Disable(GL_SCISSOR_TEST);
     gl->Disable(GL_BLEND);
     gl->Enable(GL_DEPTH_TEST);
     for (GLuint i = 0; i < TEXTURES; i++)

@@ -90,28 +90,19 @@ void main()
     vec3 ray = axes * vec3(slope, 1.0);
     float stretch = length(ray);
     ray /= stretch;
-    float depth = depth_at(ivec2(pixel));
+    float depth = depth_at(ivec2(pixel)), above = depth_at(ivec2(pixel.x, min(int(pixel.y) + 2, tiling.z - 1)));
 
     ivec2 at = ivec2(int(pixel.x), tiling.z - 1 - int(pixel.y));
     int tile = at.y / tiling.x * tiling.y + at.x / tiling.x;
     int entry = int(texelFetch(firsts, tile).r), end = int(texelFetch(firsts, tile + 1).r);
     float left = 1.0;
     vec3 sum = vec3(0.0);
-    while (entry < end && left > limits.y) {
-        // The next tree whose rectangle holds the pixel. Loops are tested at their top: what they leave behind is
-        // then a value that a masked lane keeps, which some drivers need (llvmpipe 22).
-        int tree = 0;
-        uvec4 place = uvec4(0u);
-        bool inside = false;
-        while (!inside && entry < end) {
-            tree = 3 * int(texelFetch(entries, entry).r);
-            place = texelFetch(trees, tree);
-            ivec2 low = ivec2(place.x & 65535u, place.x >> 16), high = ivec2(place.y & 65535u, place.y >> 16);
-            inside = all(greaterThanEqual(at, low)) && all(lessThanEqual(at, high));
-            entry++;
-        }
-        if (!inside)
-            break;
+    // A software GL runs both sides of each branch, and the body of a loop once more than its test at the top allows:
+    // loops are tested at their end, and what is not met has no share. What is read behind a loop must then be
+    // carried by it, each from its own last value (llvmpipe 22 makes the others again, also for lanes that have left).
+    do {
+        int tree = 3 * int(texelFetch(entries, min(entry, end - 1)).r);
+        uvec4 place = texelFetch(trees, tree);
         vec4 where = uintBitsToFloat(texelFetch(trees, tree + 1));
         uvec4 looks = texelFetch(trees, tree + 2);
         vec2 turn = uintBitsToFloat(looks.xy);
@@ -129,7 +120,7 @@ void main()
             // ground before its foot: two pixels farther up that is behind it.
             vec2 off = max(1.0 - abs(vec2(at) - where.xy), 0.0);
             weight = off.x * off.y * where.z;
-            span = where.w < max(depth, depth_at(ivec2(pixel.x, min(int(pixel.y) + 2, tiling.z - 1)))) ? 1.0 : 0.0;
+            span = where.w < max(depth, above) ? 1.0 : 0.0;
         } else {
             vec3 slow = mix(u, vec3(1e-10), lessThan(abs(u), vec3(1e-10)));
             vec3 one = -where.xyz / slow, other = (size - where.xyz) / slow;
@@ -139,33 +130,37 @@ void main()
             span = min(min(high.x, depth * scale), min(high.y, high.z)) - from;
             start = where.xyz + from * u;
         }
+        ivec2 first = ivec2(place.x & 65535u, place.x >> 16), last = ivec2(place.y & 65535u, place.y >> 16);
+        if (any(lessThan(at, first)) || any(greaterThan(at, last)) || entry >= end)
+            span = 0.0;
         float leap = 1.0 / max(abs(u.x), max(abs(u.y), abs(u.z)));
         ivec3 grid = ivec3(size);
         vec3 most = size - 0.5;
         vec3 gathered = vec3(0.0);
         float before = left;
-        while (along < span && left > limits.y) {
+        do {
             // Through empty space.
             uint cell = 0u;
             float pace = 0.0;
-            while (cell < FIRST && along < span) {
-                pace = min(limits.z, span - along);
+            for (int probe = 0; probe < PROBES; probe++) {
+                pace = clamp(span - along, 0.0, limits.z);
                 float middle = along + 0.5 * pace;
                 ivec3 p = ivec3(clamp(start + middle * u, vec3(0.0), most));
                 cell = texelFetch(cells, int(place.z) + (p.z * grid.y + p.y) * grid.x + p.x).r;
-                along += limits.z;
                 if (cell < FIRST)
-                    along = max(along, middle + (float(cell) - 1.0) * leap);
+                    along = max(along + limits.z, middle + (float(cell) - 1.0) * leap);
             }
-            if (cell < FIRST)
-                break;
-            vec4 met = sample_voxel(texelFetch(voxels, int(cell - FIRST)), pace, f_eye, f_sun, f_both);
+            bool empty = cell < FIRST;
+            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)), empty ? 0.0 : pace, f_eye,
+                                    f_sun, f_both);
+            along += empty ? 0.0 : limits.z;
             float share = min(left * (1.0 - met.a) * weight, left);
             left -= share;
             gathered += share * met.rgb;
-        }
+        } while (along < span && left > limits.y);
         sum += clear * white * gathered + (before - left) * (1.0 - clear) * fog_color;
-    }
+        entry++;
+    } while (entry < end && left > limits.y);
     if (left <= limits.y) {  // what was left would have been more of the same
         sum /= 1.0 - left;
         left = 0.0;

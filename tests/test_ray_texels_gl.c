@@ -138,13 +138,15 @@ static struct frame *draw_on_cpu(struct arena *arena, const char *options, enum 
     void *values = arena_alloc(arena, 1, method->options_size), *own = NULL;
     options_default(method->options, values);
     if (options_parse(method->options, options, values, &error) != STATUS_OK ||
+        options_parse(method->options, "tile=8", values, &error) != STATUS_OK ||
         method->prepare(&workspace, scene, values, &own) != STATUS_OK ||
         method->draw(&workspace, own, view, &target) != STATUS_OK)
         fail_msg("%s", error.text);
     return frame;
 }
 
-/* The CPU turns light for blocks of pixels, this method for each, so they differ a little. */
+/* The CPU turns light for each tile, the smallest here, this method for each pixel, and trees about
+ * as small as a pixel have looks of their own in each, so they differ a little. */
 static void test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws(void **state)
 {
     (void)state;
@@ -177,7 +179,7 @@ static void test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws(void **sta
                          TARGET_RGBA32F, scene, cases[k].effects, &view, NULL);
         double rmse = tree_rmse(cpu, gl), off = tree_difference(cpu, gl, false);
         double mirrored = tree_difference(cpu, gl, true), covered = tree_mean(cpu, 3);
-        if (rmse > 0.004 || off > 0.05 * covered || mirrored < 10 * off)
+        if (rmse > 0.005 || off > 0.05 * covered || mirrored < 10 * off)
             fail_msg("%s, %s: rmse %g, coverage %g off by %g, mirrored by %g", cases[k].scene,
                      cases[k].options, rmse, covered, off, mirrored);
         arena_destroy(arena);
