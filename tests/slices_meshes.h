@@ -63,17 +63,28 @@ static inline struct plant *shape_square(struct arena *arena, float turn_rad)
     return shape_plant(arena, mesh, 2);
 }
 
-/* A closed box [0, 2] x [0, 3] x [0, 1]. */
-static inline struct plant *shape_box(struct arena *arena, enum material_kind kind)
+/* A closed box [0, 2] x [0, 3] x [0, 1], sheared: z grows by so much a metre along x. */
+static inline struct plant *shape_sheared_box(struct arena *arena, enum material_kind kind,
+                                              float shear)
 {
     static const float corners[6][4][3] = {
         {{0, 0, 1}, {2, 0, 1}, {2, 3, 1}, {0, 3, 1}}, {{2, 0, 0}, {0, 0, 0}, {0, 3, 0}, {2, 3, 0}},
         {{2, 0, 1}, {2, 0, 0}, {2, 3, 0}, {2, 3, 1}}, {{0, 0, 0}, {0, 0, 1}, {0, 3, 1}, {0, 3, 0}},
         {{0, 3, 1}, {2, 3, 1}, {2, 3, 0}, {0, 3, 0}}, {{0, 0, 0}, {2, 0, 0}, {2, 0, 1}, {0, 0, 1}}};
     struct mesh *mesh = shape_new(arena, 12, kind);
-    for (int i = 0; i < 6; i++)
-        shape_quad(mesh, corners[i]);
+    for (int i = 0; i < 6; i++) {
+        float sheared[4][3];
+        memcpy(sheared, corners[i], sizeof sheared);
+        for (int k = 0; k < 4; k++)
+            sheared[k][2] += shear * sheared[k][0];
+        shape_quad(mesh, (const float(*)[3])sheared);
+    }
     return shape_plant(arena, mesh, 2);
+}
+
+static inline struct plant *shape_box(struct arena *arena, enum material_kind kind)
+{
+    return shape_sheared_box(arena, kind, 0);
 }
 
 /* A closed ball of radius 1 about the origin, of 96 x 48 quads. */

@@ -134,6 +134,33 @@ static const uint8_t *texel(const struct slices *slices, uint8_t (*array)[4], in
     return array[slice->first + (size_t)y * (size_t)slice->width + (size_t)x];
 }
 
+/* Between slices the filling shows: in a sheared box its two slanted faces' normals, the back one's
+ * mirrored, lie on opposite sides of the view. */
+static void test_slices__filling_has_the_normal_of_the_nearer_side(void **state)
+{
+    (void)state;
+    const float shear = 0.5f, side = shear / hypotf(1, shear);
+    struct arena *arena = arena_create(0);
+    struct slices_request request = request_of(34, 16, 1);
+    struct plant *plant = shape_sheared_box(arena, MATERIAL_BARK, shear);
+    const struct slices *slices = make(arena, plant, &request);
+    const float *low = slices->stacks[0].low_m, *high = slices->stacks[0].high_m;
+    int checked[2] = {0, 0};
+    for (int i = 2; i < 32; i++)
+        for (int k = 0; k < 16; k++) {
+            float x = low[0] + ((float)i + 0.5f) * (high[0] - low[0]) / 34;
+            float z = low[2] + ((float)k + 0.5f) * (high[2] - low[2]) / 16 - shear * x;
+            if (z < 0.01f || z > 0.99f || fabsf(z - 0.5f) < 0.15f)
+                continue;
+            const uint8_t *normal = texel(slices, slices->normal, k, i, 17);
+            assert_non_null(normal);
+            assert_float_equal((normal[0] - 128) / 127.0, z > 0.5f ? -side : side, 0.01);
+            checked[z > 0.5f]++;
+        }
+    assert_true(checked[0] > 50 && checked[1] > 50);
+    arena_destroy(arena);
+}
+
 static void test_slices__bark_seen_from_inside_is_mirrored_and_leaves_are_turned(void **state)
 {
     (void)state;
@@ -459,6 +486,7 @@ int main(void)
         cmocka_unit_test(test_slices__a_turned_leaf_covers_its_projection),
         cmocka_unit_test(test_slices__a_leaf_is_whole_in_the_slice_of_its_centroid),
         cmocka_unit_test(test_slices__closed_bark_is_filled),
+        cmocka_unit_test(test_slices__filling_has_the_normal_of_the_nearer_side),
         cmocka_unit_test(test_slices__a_ball_is_cut_into_discs),
         cmocka_unit_test(test_slices__bark_seen_from_inside_is_mirrored_and_leaves_are_turned),
         cmocka_unit_test(test_slices__a_stack_seen_from_the_front_is_what_rays_see),

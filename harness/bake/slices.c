@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Changes whenever the same request would bake other bytes. */
-enum { SLICES_VERSION = 3, DIRECTIONS_MOST = 64 };
+enum { SLICES_VERSION = 4, DIRECTIONS_MOST = 64 };
 
 const float slices_axes[3][3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
 

@@ -23,7 +23,8 @@
 
 /* Where a hit goes.
  * clip:     into the slab of its depth; what lies inside closed bark is filled (Meyer and Neyret
- *           1998, section 4.1: contours). Leaves may be cut in two.
+ *           1998, section 4.1: contours), with what is nearer, the bark before or behind it. Leaves
+ *           may be cut in two.
  * centroid: a leaf goes whole into the slab of its centroid (Senegas 2001, 5.7.2); bark as above.
  */
 enum slices_cut { SLICES_CLIP, SLICES_CENTROID };

@@ -110,6 +110,16 @@ static bool bark_closed(const struct slices_sight *sight, const struct raster_hi
     return inside == 0;
 }
 
+/* What lies inside closed bark is as the surface that is nearer along the line, so that what shows
+ * between slices has the normal of the side that it is seen from. */
+static void slabs_fill(const struct slices_sight *sight, struct slices_column *column, int front,
+                       int back, const struct look *entered, const struct look *left)
+{
+    for (int s = front - 1; s > back; s--)
+        if (slab_open(column, s))
+            slab_add(sight, column, s, front - s <= s - back ? entered : left, (float)s + 0.5f);
+}
+
 void slices_line(const struct slices_sight *sight, struct slices_column *column,
                  const struct raster_hit *hits, size_t count, int i, int j)
 {
@@ -120,8 +130,10 @@ void slices_line(const struct slices_sight *sight, struct slices_column *column,
     for (size_t n = 0; n < count; n++) {
         int slab = slab_of(sight, &hits[n]);
         bool bark = !slices_is_leaf(sight->bake, hits[n].triangle);
+        int after = inside + (raster_area(&sight->plane, hits[n].triangle) > 0 ? 1 : -1);
         bool open = slab_open(column, slab), entering = closed && bark && inside == 0;
-        bool known = (open || entering) && look_at(sight, hits[n].triangle, i, j, &look);
+        bool leaving = closed && bark && after == 0;
+        bool known = (open || entering || leaving) && look_at(sight, hits[n].triangle, i, j, &look);
         if (known && open)
             slab_add(sight, column, slab, &look, hits[n].depth);
         if (!closed || !bark)
@@ -131,9 +143,8 @@ void slices_line(const struct slices_sight *sight, struct slices_column *column,
             entered = look;
             entered_slab = slab;
         }
-        inside += raster_area(&sight->plane, hits[n].triangle) > 0 ? 1 : -1;
-        for (int s = entered_slab - 1; filled && inside == 0 && s > slab; s--)
-            if (slab_open(column, s))
-                slab_add(sight, column, s, &entered, (float)s + 0.5f);
+        if (leaving && filled)
+            slabs_fill(sight, column, entered_slab, slab, &entered, known ? &look : &entered);
+        inside = after;
     }
 }
