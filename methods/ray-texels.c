@@ -3,7 +3,7 @@
 
 struct options {
     int resolution, model, tile, isa;
-    float stop, step, bias;
+    float stop, step, bias, slab;
 };
 
 /* clang-format off */
@@ -15,6 +15,9 @@ static const struct option table[] = {
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
     OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
+    OPTION(struct options, slab, 0, 0, 16, "voxels",
+           "where crowns interlock they are drawn together, in slabs so deep: when thin, Chiba's sum "
+           "of densities; 0: each tree whole, the nearer first"),
     OPTION(struct options, tile, 32, 8, 64, "px", "side of the tiles that trees are binned to"),
     OPTION_WORD(struct options, isa, 0, "auto|plain|avx2|avx512",
                 "the processor's vectors; another set than it has is drawn with plain C"),
@@ -35,6 +38,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .stop = options->stop,
         .step = options->step,
         .bias = options->bias,
+        .slab = options->slab,
         .tile_px = options->tile,
         .isa = isas[options->isa],
     };
@@ -53,7 +57,7 @@ const struct method ray_texels_method = {
     .name = "ray-texels",
     .summary = "rays marched through voxels of the plants, on the CPU",
     .source = "Kajiya and Kay 1989, doi:10.1145/74334.74361; Neyret 1998, doi:10.1109/2945.675652; "
-              "Noma 1995; "
+              "Noma 1995; Chiba et al. 1997; "
               "Heitz et al. 2015, doi:10.1145/2766988; Senegas 2001",
     .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
     .options = table,

@@ -35,6 +35,7 @@ static void slab_fill(struct slab *slab, float extinction, const float eye[3], c
     memcpy(job->first, ray, sizeof job->first);
     job->speed = sqrtf(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
     job->step = 1;
+    job->far_m = INFINITY;
     job->hidden = job->seen = job->lit = unit;
     for (int c = 0; c < 3; c++)
         job->shade[c] = 1.0f / 255; /* every voxel glows with radiance 1 */
@@ -403,6 +404,49 @@ static void test_march__overlapping_trees_and_one_within_another_cover_as_traced
     balls_check(3, 3000, 0.25, EFFECT_TWO_SIDED | EFFECT_AMBIENT, 0.05);
 }
 
+/* Two trees in one place, each one homogeneous voxel of the same leaves but for their colour: of
+ * all that is hidden each hides a half, whichever comes first. */
+static void test_march__thin_slabs_of_overlapping_trees_sum_their_densities(void **state)
+{
+    (void)state;
+    struct world world = world_of_balls(1, 3000, 0.25);
+    struct scene *scene = &world.scene;
+    struct mesh *dark = ball_of_leaves(world.arena, 3000, 0.25);
+    struct march_options options = {.resolution = 1, .step = 1, .tile_px = 16};
+    const float *pictures[4]; /* neither, the first, the second, both */
+    for (int c = 0; c < 3; c++)
+        dark->materials[0].albedo[c] *= 0.1f * (float)(c + 1);
+    scene->species[1] =
+        (struct species){"dark", plant_from_mesh(world.arena, "dark", dark), 1, 1, 1};
+    scene->species_count = 2;
+    for (int k = 0; k < 4; k++) {
+        scene->instances[0] = scene->instances[1] = (struct instance){{0, 0, 0}, 0.3f, 1, 0};
+        scene->instances[1].species = 1;
+        if (k == 2)
+            scene->instances[0].species = 1;
+        scene->instances_count = k == 3 ? 2 : k > 0;
+        options.slab = k == 3 ? 0.004f : 0;
+        pictures[k] = march_picture(&world, &options, EFFECT_TWO_SIDED, 2)->rgba;
+    }
+    options.slab = 0;
+    const float *whole = march_picture(&world, &options, EFFECT_TWO_SIDED, 2)->rgba;
+    double worst = 0, apart = 0;
+    for (size_t i = 0; i < 96 * 80; i++) {
+        double clear = 1 - pictures[1][4 * i + 3];
+        assert_true(fabs(1 - pictures[3][4 * i + 3] - clear * clear) < 1e-4);
+        for (size_t c = 4 * i; c < 4 * i + 3; c++) {
+            double behind = pictures[0][c], first = pictures[1][c] - clear * behind;
+            double second = pictures[2][c] - clear * behind;
+            double sum = (first + second) / 2 * (1 + clear) + clear * clear * behind;
+            worst = fmax(worst, fabs(pictures[3][c] - sum));
+            apart = fmax(apart, fabs(whole[c] - sum));
+        }
+    }
+    if (!(worst < 0.002 && apart > 10 * worst))
+        fail_msg("slabs off by %g, whole trees by %g", worst, apart);
+    arena_destroy(world.arena);
+}
+
 static void test_march__light_along_each_axis_shines_as_traced(void **state)
 {
     (void)state;
@@ -490,6 +534,7 @@ int main(void)
         cmocka_unit_test(test_march__a_ball_of_leaves_covers_and_shines_as_traced),
         cmocka_unit_test(test_march__a_ball_of_leaves_covers_as_traced_by_every_model),
         cmocka_unit_test(test_march__overlapping_trees_and_one_within_another_cover_as_traced),
+        cmocka_unit_test(test_march__thin_slabs_of_overlapping_trees_sum_their_densities),
         cmocka_unit_test(test_march__light_along_each_axis_shines_as_traced),
         cmocka_unit_test(test_march__the_eye_within_a_crown_sees_as_traced),
         cmocka_unit_test(test_march__threads_tiles_and_instruction_sets_change_no_byte),

@@ -1,12 +1,10 @@
 /* The march's frame: trees sorted and binned to tiles, tiles drawn front to back by all threads. */
 #include "bake/cull.h"
-#include "bake/march_job.h"
+#include "bake/march_canvas.h"
 
 #include <math.h>
 #include <omp.h>
 #include <string.h>
-
-enum { TILE_MAX = 64, TILE_BLOCKS_MAX = (TILE_MAX / MARCH_BLOCK) * (TILE_MAX / MARCH_BLOCK) };
 
 struct march {
     const struct scene *scene;
@@ -16,9 +14,10 @@ struct march {
     struct march_tree *trees; /* one an instance */
     struct cull *cull;
     struct backdrop_cpu *backdrop;
-    struct march_seen *seen; /* of the trees in view, in their order */
-    size_t turns_count;      /* of all species */
-    struct march_far *fars;  /* by thread, region of the picture, turn */
+    struct march_seen *seen;  /* of the trees in view, in their order */
+    struct march_span *spans; /* the same; NULL: trees are drawn whole */
+    size_t turns_count;       /* of all species */
+    struct march_far *fars;   /* by thread, region of the picture, turn */
     size_t tiles_capacity, entries_capacity;
     uint32_t *tile_first; /* threads + 1 runs of tiles + 1 */
     uint32_t *entries;    /* numbers of the list, tile by tile */
@@ -101,6 +100,8 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
                               fars_of_thread(march) * (size_t)workspace->threads);
     march->trees = ARENA_ARRAY(workspace->arena, struct march_tree, scene->instances_count);
     march->seen = ARENA_ARRAY(workspace->arena, struct march_seen, scene->instances_count);
+    if (options->slab > 0)
+        march->spans = ARENA_ARRAY(workspace->arena, struct march_span, scene->instances_count);
     trees_fill(march, scene);
     march->cull = cull_create(workspace->arena, scene, bounds);
     return STATUS_OK;
@@ -168,9 +169,15 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
         for (size_t k = list->count * (size_t)thread / (size_t)threads; k < end; k++) {
             const struct march_tree *tree = &march->trees[list->instances[k]];
             march->seen[k] = march_see(picture, tree, list->depths_m[k]);
+            if (march->spans)
+                march->spans[k] = march_span_of(picture, tree, march->seen[k].level);
             tree_bin(tiles, &march->seen[k], march->tile_first + run * ((size_t)thread + 1), NULL,
                      0);
         }
+    }
+    for (size_t k = march->spans ? list->count : 0; k-- > 0;) {
+        struct march_span *span = &march->spans[k];
+        span->rest_m = k + 1 < list->count ? fminf(span->near_m, span[1].rest_m) : span->near_m;
     }
     size_t count = places_of(march->tile_first, tiles, threads);
     if (count > march->entries_capacity) {
@@ -184,135 +191,6 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
             tree_bin(tiles, &march->seen[k], march->tile_first + run * ((size_t)thread + 1),
                      march->entries, (uint32_t)k);
     }
-}
-
-/* A tile while it is drawn. */
-struct canvas {
-    struct march_rays blocks[TILE_BLOCKS_MAX];
-    bool open[TILE_BLOCKS_MAX]; /* more can be seen through it */
-    float depths_m[TILE_MAX * TILE_MAX];
-    float rgb[TILE_MAX * TILE_MAX][3];
-    struct backdrop_tile tile;
-    struct march_far *fars; /* the thread's, made when first needed */
-    int across, blocks_count, open_count;
-};
-
-static void canvas_begin(struct canvas *canvas, const struct march *march,
-                         const struct tiles *tiles, const struct view *view, size_t tile)
-{
-    const int side = tiles->side_px;
-    int x = (int)(tile % (size_t)tiles->across) * side;
-    int y = (int)(tile / (size_t)tiles->across) * side;
-    canvas->tile = (struct backdrop_tile){
-        .x_px = x,
-        .y_px = y,
-        .width_px = x + side < view->width_px ? side : view->width_px - x,
-        .height_px = y + side < view->height_px ? side : view->height_px - y,
-        .stride = side,
-        .depths_m = canvas->depths_m,
-        .rgb = canvas->rgb,
-    };
-    backdrop_cpu_tile(march->backdrop, &canvas->tile);
-    canvas->across = side / MARCH_BLOCK;
-    canvas->blocks_count = canvas->open_count = canvas->across * canvas->across;
-    memset(canvas->blocks, 0, (size_t)canvas->blocks_count * sizeof *canvas->blocks);
-    for (int row = 0; row < canvas->tile.height_px; row++)
-        for (int column = 0; column < canvas->tile.width_px; column++) {
-            struct march_rays *rays =
-                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
-            int lane = row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK;
-            rays->left[lane] = 1;
-            rays->depths_m[lane] = canvas->depths_m[row * side + column];
-        }
-    for (int block = 0; block < canvas->blocks_count; block++)
-        canvas->open[block] = true;
-}
-
-/* Pixels outside the picture were never opened. */
-static void canvas_end(const struct canvas *canvas, float stop, const struct view *view,
-                       float *pixels)
-{
-    const struct backdrop_tile *tile = &canvas->tile;
-    for (int row = 0; row < tile->height_px; row++)
-        for (int column = 0; column < tile->width_px; column++) {
-            const struct march_rays *rays =
-                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
-            int lane = row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK;
-            float left = rays->left[lane], gain = 1;
-            if (left <= stop) { /* what was left would have been more of the same */
-                gain = 1 / (1 - left);
-                left = 0;
-            }
-            float *pixel = pixels + 4 * ((size_t)(tile->y_px + row) * (size_t)view->width_px +
-                                         (size_t)(tile->x_px + column));
-            const float *behind = canvas->rgb[row * tile->stride + column];
-            for (int c = 0; c < 3; c++)
-                pixel[c] = gain * rays->rgb[c][lane] + left * behind[c];
-            pixel[3] = 1 - left;
-        }
-}
-
-/* A pixel's centre may see the ground before the tree that stands on it, since the tree is
- * elsewhere in the pixel: what hides the tree is nearer than the plane of its foot. */
-static bool splat_is_hidden(const struct march_splat *splat, const struct backdrop_rays *rays,
-                            float x_px, float y_px, float behind_m)
-{
-    float rise = rays->first[1] + x_px * rays->right[1] + y_px * rays->down[1];
-    float plane_m = splat->lift_m / rise;
-    bool meets = plane_m > 0 && plane_m < splat->depth_m;
-    return !(behind_m > (meets ? 0.98f * plane_m : splat->depth_m));
-}
-
-static void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
-                         const struct backdrop_rays *picture_rays)
-{
-    for (int k = 0; k < 4; k++) {
-        int x = splat->x_px + (k & 1) - canvas->tile.x_px;
-        int y = splat->y_px + (k >> 1) - canvas->tile.y_px;
-        if (x < 0 || y < 0 || x >= canvas->tile.width_px || y >= canvas->tile.height_px)
-            continue;
-        struct march_rays *rays =
-            &canvas->blocks[y / MARCH_BLOCK * canvas->across + x / MARCH_BLOCK];
-        int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
-        if (splat_is_hidden(splat, picture_rays, (float)(splat->x_px + (k & 1)),
-                            (float)(splat->y_px + (k >> 1)), rays->depths_m[lane]))
-            continue;
-        float share = rays->left[lane] * splat->shares[k];
-        rays->left[lane] -= share;
-        for (int c = 0; c < 3; c++)
-            rays->rgb[c][lane] += share * splat->rgb[c];
-    }
-}
-
-static int block_clamp(int at, int across)
-{
-    return at < 0 ? 0 : at >= across ? across - 1 : at;
-}
-
-static void canvas_march(struct canvas *canvas, const struct march *march,
-                         const struct march_view *picture, const struct march_tree *tree,
-                         const struct march_seen *seen)
-{
-    const float voxel_m = march->species[tree->species].voxels->levels[seen->level].voxel_m;
-    const float half = 0.5f * (float)(canvas->tile.stride - 1);
-    const int from[2] = {canvas->tile.x_px, canvas->tile.y_px};
-    int low[2], high[2];
-    struct march_job job;
-    march_job_fill(picture, tree, seen->level, (float)from[0] + half, (float)from[1] + half, &job);
-    for (int i = 0; i < 2; i++) {
-        low[i] = block_clamp((seen->low[i] - from[i]) / MARCH_BLOCK, canvas->across);
-        high[i] = block_clamp((seen->high[i] - from[i]) / MARCH_BLOCK, canvas->across);
-    }
-    for (int y = low[1]; y <= high[1]; y++)
-        for (int x = low[0]; x <= high[0]; x++) {
-            int block = y * canvas->across + x;
-            if (!canvas->open[block])
-                continue;
-            march_job_aim(picture, tree, (float)(from[0] + x * MARCH_BLOCK),
-                          (float)(from[1] + y * MARCH_BLOCK), voxel_m, &job);
-            canvas->open[block] = march->block(&job, &canvas->blocks[block]);
-            canvas->open_count -= !canvas->open[block];
-        }
 }
 
 /* The tree from far away in the direction of the tile's region. */
@@ -333,18 +211,80 @@ static const struct march_far *far_of(const struct march *march, const struct ma
     return far;
 }
 
+/* The end of the run of entries that reach into each other's depths. */
+static uint32_t interlocked_end(const struct march *march, uint32_t at, uint32_t end)
+{
+    float far_m = march->spans[march->entries[at++]].far_m;
+    for (; at < end && march->spans[march->entries[at]].rest_m < far_m; at++) {
+        if (march->seen[march->entries[at]].level == MARCH_SPLAT)
+            break;
+        far_m = fmaxf(far_m, march->spans[march->entries[at]].far_m);
+    }
+    return at;
+}
+
+/* The depth to which a slab from a depth on goes: to the next tree's box; where several trees are,
+ * some voxels at most. */
+static float slab_end(const struct march *march, uint32_t first, uint32_t last, float from_m)
+{
+    float voxel_m = INFINITY, next_m = INFINITY;
+    int trees = 0;
+    for (uint32_t at = first; at < last; at++) {
+        const struct march_span *span = &march->spans[march->entries[at]];
+        if (span->far_m <= from_m)
+            continue;
+        if (span->near_m > from_m) {
+            next_m = fminf(next_m, span->near_m);
+            continue;
+        }
+        voxel_m = fminf(voxel_m, span->voxel_m);
+        trees++;
+    }
+    float deep_m = trees > 1 ? fmaxf(march->options.slab * voxel_m, 1e-5f * from_m) : INFINITY;
+    return fminf(next_m, from_m + deep_m);
+}
+
+/* Trees that stand in each other, slab by slab: as thin slabs, the sum of their densities, each
+ * with its own colour. Chiba, Muraoka, Doi and Hosokawa 1997, with each tree's own normals. */
+static void interlocked_draw(const struct march *march, const struct march_view *picture,
+                             const struct cull_list *list, uint32_t first, uint32_t last,
+                             struct canvas *canvas)
+{
+    float from_m = picture->view->near_m, far_m = from_m;
+    for (uint32_t at = first; at < last; at++)
+        far_m = fmaxf(far_m, march->spans[march->entries[at]].far_m);
+    while (from_m < far_m && canvas->open_count) {
+        float to_m = slab_end(march, first, last, from_m);
+        for (uint32_t at = first; at < last; at++) {
+            uint32_t k = march->entries[at];
+            if (march->spans[k].near_m < to_m && march->spans[k].far_m > from_m)
+                canvas_march(canvas, picture, &march->trees[list->instances[k]], &march->seen[k],
+                             from_m, to_m);
+        }
+        from_m = to_m;
+    }
+}
+
 /* Returns the lookups of its rays. */
 static uint64_t tile_draw(const struct march *march, const struct march_view *picture,
                           const struct tiles *tiles, const struct cull_list *list, size_t tile,
                           struct canvas *canvas, float *pixels)
 {
-    canvas_begin(canvas, march, tiles, picture->view, tile);
-    for (uint32_t at = march->tile_first[tile];
-         at < march->tile_first[tile + 1] && canvas->open_count; at++) {
+    const int side = tiles->side_px;
+    canvas_begin(canvas, picture->view, (int)(tile % (size_t)tiles->across) * side,
+                 (int)(tile / (size_t)tiles->across) * side, side);
+    const uint32_t end = march->tile_first[tile + 1];
+    for (uint32_t at = march->tile_first[tile]; at < end && canvas->open_count; at++) {
         uint32_t k = march->entries[at];
         const struct march_tree *tree = &march->trees[list->instances[k]];
+        if (march->seen[k].level != MARCH_SPLAT && march->spans) {
+            uint32_t last = interlocked_end(march, at, end);
+            interlocked_draw(march, picture, list, at, last, canvas);
+            at = last - 1;
+            continue;
+        }
         if (march->seen[k].level != MARCH_SPLAT) {
-            canvas_march(canvas, march, picture, tree, &march->seen[k]);
+            canvas_march(canvas, picture, tree, &march->seen[k], 0, INFINITY);
             continue;
         }
         struct march_splat splat;
@@ -378,6 +318,8 @@ enum status march_draw(struct workspace *workspace, struct march *march, const s
 #pragma omp parallel num_threads(workspace->threads) reduction(+ : lookups)
     {
         struct canvas canvas;
+        canvas.backdrop = march->backdrop;
+        canvas.block = march->block;
         canvas.fars = march->fars + fars_of_thread(march) * (size_t)omp_get_thread_num();
         memset(canvas.fars, 0, fars_of_thread(march) * sizeof *canvas.fars);
 #pragma omp for schedule(dynamic, 1)

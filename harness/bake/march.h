@@ -1,6 +1,6 @@
 /* Forests marched through by rays on the CPU: voxels of each plant, tiles of the picture, packets
  * of rays. Trees are sorted by depth; where crowns interlock, the nearer tree is drawn whole before
- * the farther one. */
+ * the farther one, or both in slabs. */
 #ifndef TREELINE_BAKE_MARCH_H
 #define TREELINE_BAKE_MARCH_H
 
@@ -21,6 +21,7 @@ struct march_options {
     float stop;      /* a ray ends when it lets through no more */
     float step;      /* voxels */
     float bias;      /* added to the level of detail */
+    float slab;      /* voxels; 0: trees are drawn whole */
     int tile_px;     /* side of a tile */
     const char *isa; /* a name of march_isas(), or plain C for what is not there; NULL: the last */
 };

@@ -101,6 +101,15 @@ static float spread_of(const struct box *box, const float axis[3], const float f
     return spread;
 }
 
+/* Half of what a box spreads along a direction. */
+static float reach_of(const struct box *box, const float direction[3])
+{
+    float reach = 0;
+    for (int k = 0; k < 3; k++)
+        reach += fabsf(dot3(box->half_m[k], direction));
+    return reach;
+}
+
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
                             float depth_m)
 {
@@ -114,9 +123,7 @@ struct march_seen march_see(const struct march_view *picture, const struct march
     struct march_seen seen = {{0, 0}, {-1, -1}, 0};
     seen.level = (uint8_t)level_of(picture, tree, species->voxels, depth_m);
     struct box box = box_of(picture, tree, species->voxels, seen.level);
-    float middle = dot3(box.middle_m, view->forward), reach = 0;
-    for (int k = 0; k < 3; k++)
-        reach += fabsf(dot3(box.half_m[k], view->forward));
+    float middle = dot3(box.middle_m, view->forward), reach = reach_of(&box, view->forward);
     if (middle + reach < view->near_m)
         return seen;
     for (int i = 0; i < 2; i++) {
@@ -133,6 +140,19 @@ struct march_seen march_see(const struct march_view *picture, const struct march
         seen_between(&seen, i, ceilf(at - spread), floorf(at + spread), size_px);
     }
     return seen;
+}
+
+struct march_span march_span_of(const struct march_view *picture, const struct march_tree *tree,
+                                uint32_t level)
+{
+    const struct voxels *voxels = picture->species[tree->species].voxels;
+    uint32_t kept = level < voxels->levels_count ? level : 0;
+    struct box box = box_of(picture, tree, voxels, kept);
+    float middle_m = dot3(box.middle_m, picture->view->forward);
+    float reach_m = reach_of(&box, picture->view->forward);
+    return (struct march_span){.near_m = middle_m - reach_m,
+                               .far_m = middle_m + reach_m,
+                               .voxel_m = tree->scale * voxels->levels[kept].voxel_m};
 }
 
 /* x' M y of a packed matrix. */
@@ -217,6 +237,7 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     for (int i = 0; i < 3; i++)
         toward_eye[i] = -job->first[i] / job->speed;
     job->near_m = picture->view->near_m;
+    job->far_m = INFINITY;
     job->step = picture->options.step;
     job->stop = picture->options.stop;
     light_fill(picture, tree, voxels, toward_eye, job);

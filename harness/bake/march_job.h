@@ -42,6 +42,15 @@ struct march_seen {
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
                             float depth_m);
 
+/* Depths along the view that a tree's box at a level takes (m), the side of its voxels there; of a
+ * splat, its box at the finest. */
+struct march_span {
+    float near_m, far_m, voxel_m;
+    float rest_m; /* the least near_m from here to the list's end */
+};
+struct march_span march_span_of(const struct march_view *picture, const struct march_tree *tree,
+                                uint32_t level);
+
 /* Everything but the block's own first ray, for pixels around (x, y). */
 void march_job_fill(const struct march_view *picture, const struct march_tree *tree, uint32_t level,
                     float x_px, float y_px, struct march_job *job);

@@ -137,6 +137,7 @@ static inline bool march_lanes(const struct march_job *job, struct march_rays *r
         steepest = lanes_max(steepest, lanes_max(ray[i], -ray[i]));
     }
     lanes at = lanes_all(job->near_m), end = lanes_load(rays->depths_m + first);
+    end = lanes_min(end, lanes_all(job->far_m));
     box_cut(job, ray, &at, &end);
     lanes_mask alive = lanes_both(lanes_less(at, end), open);
     if (!lanes_any(alive))

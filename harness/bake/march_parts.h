@@ -27,7 +27,7 @@ struct march_job {
     float eye[3];
     float first[3], right[3], down[3]; /* rays, a metre along the view */
     float speed;                       /* length of a ray a metre along the view */
-    float near_m, step, stop;
+    float near_m, far_m, step, stop;
     struct march_form hidden;          /* w' S w */
     struct march_form seen, lit, both; /* w' M w, l' M l, w' M l */
     float sun[3], shade[3]; /* radiance of a white voxel's byte: by the sun, by the sky */

@@ -1,0 +1,120 @@
+/* A tile of the march's picture while it is drawn. */
+#include "bake/march_canvas.h"
+
+#include <math.h>
+#include <string.h>
+
+void canvas_begin(struct canvas *canvas, const struct view *view, int x, int y, int side)
+{
+    canvas->tile = (struct backdrop_tile){
+        .x_px = x,
+        .y_px = y,
+        .width_px = x + side < view->width_px ? side : view->width_px - x,
+        .height_px = y + side < view->height_px ? side : view->height_px - y,
+        .stride = side,
+        .depths_m = canvas->depths_m,
+        .rgb = canvas->rgb,
+    };
+    backdrop_cpu_tile(canvas->backdrop, &canvas->tile);
+    canvas->across = side / MARCH_BLOCK;
+    canvas->blocks_count = canvas->open_count = canvas->across * canvas->across;
+    memset(canvas->blocks, 0, (size_t)canvas->blocks_count * sizeof *canvas->blocks);
+    for (int row = 0; row < canvas->tile.height_px; row++)
+        for (int column = 0; column < canvas->tile.width_px; column++) {
+            struct march_rays *rays =
+                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
+            int lane = row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK;
+            rays->left[lane] = 1;
+            rays->depths_m[lane] = canvas->depths_m[row * side + column];
+        }
+    for (int block = 0; block < canvas->blocks_count; block++)
+        canvas->open[block] = true;
+}
+
+/* Pixels outside the picture were never opened. */
+void canvas_end(const struct canvas *canvas, float stop, const struct view *view, float *pixels)
+{
+    const struct backdrop_tile *tile = &canvas->tile;
+    for (int row = 0; row < tile->height_px; row++)
+        for (int column = 0; column < tile->width_px; column++) {
+            const struct march_rays *rays =
+                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
+            int lane = row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK;
+            float left = rays->left[lane], gain = 1;
+            if (left <= stop) { /* what was left would have been more of the same */
+                gain = 1 / (1 - left);
+                left = 0;
+            }
+            float *pixel = pixels + 4 * ((size_t)(tile->y_px + row) * (size_t)view->width_px +
+                                         (size_t)(tile->x_px + column));
+            const float *behind = canvas->rgb[row * tile->stride + column];
+            for (int c = 0; c < 3; c++)
+                pixel[c] = gain * rays->rgb[c][lane] + left * behind[c];
+            pixel[3] = 1 - left;
+        }
+}
+
+/* A pixel's centre may see the ground before the tree that stands on it, since the tree is
+ * elsewhere in the pixel: what hides the tree is nearer than the plane of its foot. */
+static bool splat_is_hidden(const struct march_splat *splat, const struct backdrop_rays *rays,
+                            float x_px, float y_px, float behind_m)
+{
+    float rise = rays->first[1] + x_px * rays->right[1] + y_px * rays->down[1];
+    float plane_m = splat->lift_m / rise;
+    bool meets = plane_m > 0 && plane_m < splat->depth_m;
+    return !(behind_m > (meets ? 0.98f * plane_m : splat->depth_m));
+}
+
+void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
+                  const struct backdrop_rays *picture_rays)
+{
+    for (int k = 0; k < 4; k++) {
+        int x = splat->x_px + (k & 1) - canvas->tile.x_px;
+        int y = splat->y_px + (k >> 1) - canvas->tile.y_px;
+        if (x < 0 || y < 0 || x >= canvas->tile.width_px || y >= canvas->tile.height_px)
+            continue;
+        struct march_rays *rays =
+            &canvas->blocks[y / MARCH_BLOCK * canvas->across + x / MARCH_BLOCK];
+        int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
+        if (splat_is_hidden(splat, picture_rays, (float)(splat->x_px + (k & 1)),
+                            (float)(splat->y_px + (k >> 1)), rays->depths_m[lane]))
+            continue;
+        float share = rays->left[lane] * splat->shares[k];
+        rays->left[lane] -= share;
+        for (int c = 0; c < 3; c++)
+            rays->rgb[c][lane] += share * splat->rgb[c];
+    }
+}
+
+static int block_clamp(int at, int across)
+{
+    return at < 0 ? 0 : at >= across ? across - 1 : at;
+}
+
+void canvas_march(struct canvas *canvas, const struct march_view *picture,
+                  const struct march_tree *tree, const struct march_seen *seen, float from_m,
+                  float to_m)
+{
+    const float voxel_m = picture->species[tree->species].voxels->levels[seen->level].voxel_m;
+    const float half = 0.5f * (float)(canvas->tile.stride - 1);
+    const int from[2] = {canvas->tile.x_px, canvas->tile.y_px};
+    int low[2], high[2];
+    struct march_job job;
+    march_job_fill(picture, tree, seen->level, (float)from[0] + half, (float)from[1] + half, &job);
+    job.near_m = fmaxf(job.near_m, from_m);
+    job.far_m = to_m;
+    for (int i = 0; i < 2; i++) {
+        low[i] = block_clamp((seen->low[i] - from[i]) / MARCH_BLOCK, canvas->across);
+        high[i] = block_clamp((seen->high[i] - from[i]) / MARCH_BLOCK, canvas->across);
+    }
+    for (int y = low[1]; y <= high[1]; y++)
+        for (int x = low[0]; x <= high[0]; x++) {
+            int block = y * canvas->across + x;
+            if (!canvas->open[block])
+                continue;
+            march_job_aim(picture, tree, (float)(from[0] + x * MARCH_BLOCK),
+                          (float)(from[1] + y * MARCH_BLOCK), voxel_m, &job);
+            canvas->open[block] = canvas->block(&job, &canvas->blocks[block]);
+            canvas->open_count -= !canvas->open[block];
+        }
+}

@@ -1,0 +1,33 @@
+/* A tile of the march's picture while it is drawn: rays opened, marched, turned into pixels. */
+#ifndef TREELINE_BAKE_MARCH_CANVAS_H
+#define TREELINE_BAKE_MARCH_CANVAS_H
+
+#include "bake/march_job.h"
+
+enum { TILE_MAX = 64, TILE_BLOCKS_MAX = (TILE_MAX / MARCH_BLOCK) * (TILE_MAX / MARCH_BLOCK) };
+
+/* The first three are given. */
+struct canvas {
+    struct march_far *fars; /* the thread's, made when first needed */
+    struct backdrop_cpu *backdrop;
+    march_block *block;
+    struct march_rays blocks[TILE_BLOCKS_MAX];
+    bool open[TILE_BLOCKS_MAX]; /* more can be seen through it */
+    float depths_m[TILE_MAX * TILE_MAX];
+    float rgb[TILE_MAX * TILE_MAX][3];
+    struct backdrop_tile tile;
+    int across, blocks_count, open_count;
+};
+
+/* The tile whose upper left pixel is (x, y), of side_px. */
+void canvas_begin(struct canvas *canvas, const struct view *view, int x, int y, int side_px);
+void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
+                  const struct backdrop_rays *picture_rays);
+/* What lies between two depths along the view, m. */
+void canvas_march(struct canvas *canvas, const struct march_view *picture,
+                  const struct march_tree *tree, const struct march_seen *seen, float from_m,
+                  float to_m);
+/* pixels: of the picture, height x width x 4. */
+void canvas_end(const struct canvas *canvas, float stop, const struct view *view, float *pixels);
+
+#endif
