@@ -22,7 +22,7 @@ static const struct option table[] = {
     OPTION_WORD(struct options, model, 0, "sggx|isotropic",
                 "how leaves hide and are lit: by the second moments of their normals, or alike on all sides"),
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
-    OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
+    OPTION(struct options, step, 1.5, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
     OPTION_END,
 };
@@ -176,7 +176,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     state->vertices = gl_vertex_array(gl);
     state->framebuffer = gl_framebuffer(gl);
     const char *defines =
-        state->options.model ? "FIRST 256u\nPROBES 1\nISOTROPIC 1\n" : "FIRST 256u\nPROBES 1\n";
+        state->options.model ? "FIRST 256u\nPROBES 2\nISOTROPIC 1\n" : "FIRST 256u\nPROBES 2\n";
     enum status status = backdrop_prepare(workspace, scene, &state->backdrop);
     if (!status)
         status = prepare_volumes(workspace, state);

@@ -54,8 +54,9 @@ static void test_ray_texels_gl__each_layer_lets_half_of_the_light_through(void *
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    static const char *const options[] = {"resolution=16,stop=0", "resolution=16,stop=0,step=0.25",
-                                          "resolution=16,stop=0,bias=-4"};
+    static const char *const options[] = {"resolution=16,stop=0,step=1",
+                                          "resolution=16,stop=0,step=0.25",
+                                          "resolution=16,stop=0,step=1,bias=-4"};
     for (int count = 1; count <= 3; count++)
         for (int k = 0; k < 3; k++) {
             struct scene *scene = tree_scene(arena, layers(arena, count), 1, 0);
@@ -73,8 +74,8 @@ static void test_ray_texels_gl__an_eye_within_sees_what_is_before_it(void **stat
     struct arena *arena = arena_create(0);
     struct scene *scene = tree_scene(arena, layers(arena, 3), 1, 0);
     struct view view = layers_view(scene, 1.25f); /* a layer and a half of one */
-    struct frame *frame = tree_draw(arena, tree_method("ray-texels-gl"), "resolution=16,stop=0",
-                                    scene, lit, &view, NULL);
+    struct frame *frame = tree_draw(arena, tree_method("ray-texels-gl"),
+                                    "resolution=16,stop=0,step=1", scene, lit, &view, NULL);
     expect_coverage(frame, 1 - pow(0.5, 1.5));
     arena_destroy(arena);
 }
@@ -87,8 +88,8 @@ static void test_ray_texels_gl__a_tree_in_another_hides_what_is_left(void **stat
     scene->instances[1].position_m[2] = 0.3f;
     scene->instances[2].rotation_rad = 3.1415927f;
     struct view view = layers_view(scene, 100);
-    struct frame *frame = tree_draw(arena, tree_method("ray-texels-gl"), "resolution=16,stop=0",
-                                    scene, lit, &view, NULL);
+    struct frame *frame = tree_draw(arena, tree_method("ray-texels-gl"),
+                                    "resolution=16,stop=0,step=1", scene, lit, &view, NULL);
     expect_coverage(frame, 1 - pow(0.5, 3));
     arena_destroy(arena);
 }
@@ -156,11 +157,12 @@ static void test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws(void **sta
         enum lod lod;
         unsigned effects;
     } cases[] = {
-        {"oak-hills", "resolution=48", 300, LOD_HIGH, EFFECT_TWO_SIDED | EFFECT_FOG},
-        {"oak-hills", "resolution=48,model=isotropic", 30, LOD_LOW, EFFECT_AMBIENT},
-        {"poplar-forest", "resolution=64", 200, LOD_AUTO, EFFECT_TWO_SIDED | EFFECT_AMBIENT},
-        {"poplar-forest", "resolution=32", 20000, LOD_HIGH, EFFECT_TWO_SIDED | EFFECT_AMBIENT},
-        {"walk-in", "resolution=32,bias=-1", 40, LOD_HIGH, EFFECT_TWO_SIDED},
+        {"oak-hills", "resolution=48,step=1", 300, LOD_HIGH, EFFECT_TWO_SIDED | EFFECT_FOG},
+        {"oak-hills", "resolution=48,step=1,model=isotropic", 30, LOD_LOW, EFFECT_AMBIENT},
+        {"poplar-forest", "resolution=64,step=1", 200, LOD_AUTO, EFFECT_TWO_SIDED | EFFECT_AMBIENT},
+        {"poplar-forest", "resolution=32,step=1", 20000, LOD_HIGH,
+         EFFECT_TWO_SIDED | EFFECT_AMBIENT},
+        {"walk-in", "resolution=32,step=1,bias=-1", 40, LOD_HIGH, EFFECT_TWO_SIDED},
     };
     setenv("TREELINE_CACHE", "off", 1);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
