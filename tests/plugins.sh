@@ -64,7 +64,8 @@ mkdir "$work/out"
 cp methods/my-trees.c methods/my-trees.glsl methods/null.c "$work/out"
 cd "$work/out" && rm -rf "$work/tree"
 export PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig" PATH="$work/prefix/bin:$PATH"
-check 'pkg-config knows the contract' test "$(pkg-config --modversion treeline)" = 1
+abi=$(sed -n 's/^#define METHOD_ABI \([0-9]*\).*/\1/p' "$work/prefix"/include/treeline/method/method.h)
+check 'pkg-config knows the contract' test "$(pkg-config --modversion treeline)" = "${abi:-none}"
 check 'the same files build outside' make -s -f "$(pkg-config --variable=makefile treeline)" my-trees.so
 check 'a method without a shader builds by one line' bash -c 'cc -shared -fPIC $(pkg-config --cflags treeline) -o null.so null.c'
 check 'help explains the plugin' bash -c 'treeline help ./my-trees.so | grep -q sides'
