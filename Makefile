@@ -98,14 +98,17 @@ $(GEN)/%.o: $(GEN)/%.c | $(GENERATED_H)
 	$(CC) $(CFLAGS_ALL) -c -o $@ $<
 
 # Generated: the sorted list of methods, the GL loader, shaders as C text.
-$(GEN)/methods_builtin.c: $(wildcard methods/*.c) Makefile
+# Always asked, since a file that is gone is newer than nothing; written anew only when it changed.
+keep_if_same = cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+$(GEN)/methods_builtin.c: FORCE
 	@mkdir -p $(@D)
 	@{ echo '/* Generated from the file names in methods/. */'; echo '#include "method/method.h"'; \
 	names="$(sort $(patsubst methods/%.c,%,$(wildcard methods/*.c)))"; \
 	for n in $$names; do echo "extern const struct method $${n//-/_}_method;"; done; \
 	echo 'const struct method *const methods_builtin[] = {'; \
 	for n in $$names; do echo "    &$${n//-/_}_method,"; done; \
-	echo '    NULL,'; echo '};'; } > $@
+	echo '    NULL,'; echo '};'; } > $@.new
+	@$(keep_if_same)
 
 GLCOREARB := $(firstword $(wildcard /usr/include/GL/glcorearb.h))
 gl_names = awk '/^\#ifdef GL_VERSION_4_6|^\#ifndef GL_VERSION_4_6/ {exit} /^GLAPI .*APIENTRY gl/ \
@@ -119,7 +122,7 @@ $(GEN)/gl_load.c: $(GLCOREARB) Makefile
 	echo '#include "wall/gl_load.h"'; echo 'const struct gl_entry gl_entries[] = {'; \
 	$(gl_names) | while read n; do echo "    {\"gl$$n\", offsetof(struct gl, $$n)},"; done; \
 	echo '    {NULL, 0},'; echo '};'; } > $@
-# What the results say about the build; written anew only when it changed.
+# What the results say about the build.
 hash := \#
 version_of = $(shell printf '$(hash)include <%s>\nTHE $(2)\n' '$(1)' | $(CC) -E -P -x c - 2>/dev/null | sed -n 's/^THE "*\([^"]*\)"*/\1/p')
 $(GEN)/build_facts.h: FORCE
@@ -132,7 +135,7 @@ $(GEN)/build_facts.h: FORCE
 	list="$$list, meshoptimizer $(call version_of,meshoptimizer.h,MESHOPTIMIZER_VERSION)"; \
 	for p in OpenImageIO $(PKG); do list="$$list, $$p $$(pkg-config --modversion $$p 2>/dev/null)"; done; \
 	echo "#define TREELINE_LIBRARIES \"$$list\""; } > $@.new
-	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+	@$(keep_if_same)
 .PHONY: FORCE
 FORCE:
 GL_BACKENDS := $(if $(GL_OSMESA),gl_osmesa) $(if $(GL_EGL),gl_egl_surfaceless gl_egl_device)
@@ -165,7 +168,7 @@ $(BUILD)/tests/%: tests/%.c $(ARCHIVE) | $(GENERATED_H)
 PLUGINS := $(patsubst tests/plugins/%.c,$(BUILD)/plugins/%.so,$(wildcard tests/plugins/*.c))
 $(BUILD)/plugins/%.so: tests/plugins/%.c tests/plugins/wrap.h | $(GENERATED_H)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -shared -o $@ $<
+	$(CC) $(CFLAGS_ALL) -MF $(@:.so=.d) -MT $@ -shared -o $@ $<
 $(BUILD)/tests/test_cell $(BUILD)/tests/test_conform $(BUILD)/tests/test_plan: | $(PLUGINS)
 plugins: $(PLUGINS)
 
@@ -246,4 +249,4 @@ tidy: $(TIDY)
 clean:
 	rm -rf build treeline
 
--include $(OBJECTS:.o=.d) $(TESTS:=.d) $(BUILD)/harness/cli/treeline.d
+-include $(OBJECTS:.o=.d) $(TESTS:=.d) $(PLUGINS:.so=.d) $(BUILD)/harness/cli/treeline.d

@@ -2,6 +2,7 @@
 #include "bake/atlas.h"
 #include "bake/atlas_bake.h"
 
+#include "base/color.h"
 #include "base/file.h"
 #include "base/hash.h"
 
@@ -171,11 +172,6 @@ static struct level *levels_create(struct arena *scratch, const struct atlas *at
     }
 }
 
-static uint8_t byte_of(float value)
-{
-    return (uint8_t)(fminf(fmaxf(value, 0), 1) * 255 + 0.5f);
-}
-
 static void straighten(struct level *level, const struct level *coarser)
 {
     int step_x = level->width_px > 1 ? 2 : 1, step_y = level->height_px > 1 ? 2 : 1;
@@ -203,10 +199,10 @@ static void quantise(struct level *level, enum atlas_alpha alpha, bool nearest)
         const float *texel = level->texels + TEXEL_FLOATS * at;
         const float *color = alpha == ATLAS_BLEND ? texel : level->straight + 3 * at;
         for (size_t i = 0; i < 3; i++)
-            level->albedo[at][i] = byte_of(color[i]);
-        level->albedo[at][3] = byte_of(scale * texel[3]);
+            level->albedo[at][i] = color_byte(color[i]);
+        level->albedo[at][3] = color_byte(scale * texel[3]);
         for (size_t i = 0; i < 4; i++)
-            level->light[at][i] = byte_of(texel[4 + i]);
+            level->light[at][i] = color_byte(texel[4 + i]);
         level->depth[at] = (uint16_t)(fminf(fmaxf(texel[8], 0), 1) * 65535 + 0.5f);
     }
 }

@@ -2,6 +2,8 @@
  * and depth. */
 #include "bake/atlas_bake.h"
 
+#include "base/color.h"
+
 #include "atlas.glsl.h"
 
 #include <string.h>
@@ -198,11 +200,6 @@ struct bake {
     bool two_sided;
 };
 
-static uint8_t byte_of(float value)
-{
-    return (uint8_t)(fminf(fmaxf(value, 0), 1) * 255 + 0.5f);
-}
-
 static void keep_texel(struct bake *bake, struct texel *sum, size_t at)
 {
     struct atlas_plant *plant = bake->plant;
@@ -210,8 +207,8 @@ static void keep_texel(struct bake *bake, struct texel *sum, size_t at)
         return;
     float share = 1 / (float)(bake->kiln.samples * bake->kiln.samples);
     for (int i = 0; i < 3; i++)
-        plant->albedo[at][i] = byte_of(sum->color[i] * share / plant->albedo_scale);
-    plant->albedo[at][3] = byte_of(sum->count * share);
+        plant->albedo[at][i] = color_byte(sum->color[i] * share / plant->albedo_scale);
+    plant->albedo[at][3] = color_byte(sum->count * share);
     float depth = sum->depth / sum->count / plant->radius_m * 0.5f + 0.5f;
     plant->depth[at] = (uint16_t)(fminf(fmaxf(depth, 0), 1) * 65535 + 0.5f);
     for (int i = 0; i < LIGHT_MOMENTS; i++) {
@@ -252,7 +249,7 @@ static void encode_light(struct bake *bake)
             moments[i] = (float)bake->moments[at][i] / 32767;
         light_encode(&plant->light, moments, channels);
         for (int i = 0; i < LIGHT_CHANNELS; i++)
-            plant->channels[at][i] = byte_of(channels[i]);
+            plant->channels[at][i] = color_byte(channels[i]);
     }
 }
 

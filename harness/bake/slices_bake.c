@@ -4,6 +4,7 @@
 #include "bake/atlas_bake.h"
 #include "bake/slices_lines.h"
 #include "bake/views.h"
+#include "base/color.h"
 #include "plant/normals.h"
 
 #include <math.h>
@@ -154,11 +155,6 @@ static void project(struct arena *arena, struct slices_sight *sight)
     }
 }
 
-static uint8_t byte_of(float value)
-{
-    return (uint8_t)(fminf(fmaxf(value, 0), 1) * 255 + 0.5f);
-}
-
 /* The place of the next texel; *lit: of its lit colours. */
 static struct found *found_next(struct rows *rows, size_t lights_count, uint8_t (**lit)[3])
 {
@@ -190,14 +186,14 @@ static void column_flush(const struct slices_sight *sight, struct slices_column 
         found->column = (uint16_t)x;
         found->depth = (uint16_t)(65535 * inverse * cell->depth + 0.5f);
         for (int k = 0; k < 3; k++) {
-            found->color[k] = byte_of(cell->color[k] * share / scale);
+            found->color[k] = color_byte(cell->color[k] * share / scale);
             found->normal[k] = (uint8_t)(128 + lrintf(127 * inverse * cell->normal[k]));
         }
-        found->color[3] = byte_of((float)cell->count * share);
-        found->normal[3] = byte_of((float)cell->leaves * inverse);
+        found->color[3] = color_byte((float)cell->count * share);
+        found->normal[3] = color_byte((float)cell->leaves * inverse);
         for (size_t k = 0; k < 3 * lights_count; k++)
             lit[k / 3][k % 3] =
-                byte_of(sums[k / 3][k % 3] * share / sight->bake->slices->lit_scale);
+                color_byte(sums[k / 3][k % 3] * share / sight->bake->slices->lit_scale);
         memset(cell, 0, sizeof *cell);
         memset(sums, 0, lights_count * sizeof *sums);
     }

@@ -3,6 +3,7 @@
 
 #include "bake/coloring_views.h"
 #include "bake/views.h"
+#include "base/color.h"
 
 #include <math.h>
 #include <string.h>
@@ -141,11 +142,6 @@ static float sun_share(const struct colored_voxel *voxel, const struct slices_li
     return voxel->leaf * leaf + (1 - voxel->leaf) * bark;
 }
 
-static uint8_t byte_of(float share)
-{
-    return (uint8_t)(fminf(fmaxf(share, 0), 1) * 255 + 0.5f);
-}
-
 static void put_texel(const struct layers *layers, const struct slices_stack *stack, size_t cell,
                       int layer, size_t texel)
 {
@@ -158,12 +154,12 @@ static void put_texel(const struct layers *layers, const struct slices_stack *st
     float slab_m = (stack->high_m[2] - stack->low_m[2]) / (float)slices->count, normal[3];
     float coverage = seen ? 1 - powf(1 - voxel->opacity, slab_m / voxel->chord_m) : 1;
     for (int i = 0; i < 3; i++)
-        slices->color[texel][i] = byte_of(coverage * voxel->color[i] / slices->albedo_scale);
-    slices->color[texel][3] = byte_of(fmaxf(coverage, 1.0f / 255));
+        slices->color[texel][i] = color_byte(coverage * voxel->color[i] / slices->albedo_scale);
+    slices->color[texel][3] = color_byte(fmaxf(coverage, 1.0f / 255));
     normal_seen(voxel, stack->toward, normal);
     for (int i = 0; i < 3; i++)
         slices->normal[texel][i] = (uint8_t)(128.5f + 127 * fminf(fmaxf(normal[i], -1), 1));
-    slices->normal[texel][3] = byte_of(voxel->leaf);
+    slices->normal[texel][3] = color_byte(voxel->leaf);
     float depth =
         (dot3(voxel->position_m, stack->toward) - stack->low_m[2]) / slab_m - (float)layer;
     slices->depth[texel] = (uint16_t)(65535 * (seen ? fminf(fmaxf(depth, 0), 1) : 0.5f));
@@ -172,8 +168,8 @@ static void put_texel(const struct layers *layers, const struct slices_stack *st
         float share = sun_share(voxel, light, stack->toward);
         uint8_t *lit = slices->lit[k * slices->texels_count + texel];
         for (int i = 0; i < 3; i++)
-            lit[i] = byte_of(coverage * voxel->color[i] / slices->lit_scale *
-                             (light->ambient[i] + share * light->sun_radiance[i]));
+            lit[i] = color_byte(coverage * voxel->color[i] / slices->lit_scale *
+                                (light->ambient[i] + share * light->sun_radiance[i]));
         lit[3] = slices->color[texel][3];
     }
 }

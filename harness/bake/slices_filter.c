@@ -1,6 +1,8 @@
 /* Filtering of slices: smaller pictures, composites, bytes for textures, dilation. */
 #include "bake/slices.h"
 
+#include "base/color.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -74,19 +76,14 @@ void slices_fuse(const float *near, const float *far, size_t texels, float *to)
     }
 }
 
-static uint8_t byte_of(float value)
-{
-    return (uint8_t)(fminf(fmaxf(value, 0), 1) * 255 + 0.5f);
-}
-
 void slices_encode(const float *texels, size_t count, bool straight, bool unit, uint8_t (*color)[4],
                    uint8_t (*normal)[4])
 {
     for (size_t i = 0; i < count; i++, texels += SLICES_FLOATS) {
         float coverage = texels[3], inverse = coverage > 0 ? 1 / coverage : 0;
         for (int k = 0; k < 3; k++)
-            color[i][k] = byte_of(straight ? texels[k] * inverse : texels[k]);
-        color[i][3] = byte_of(coverage);
+            color[i][k] = color_byte(straight ? texels[k] * inverse : texels[k]);
+        color[i][3] = color_byte(coverage);
         if (!normal)
             continue;
         float length = sqrtf(texels[4] * texels[4] + texels[5] * texels[5] + texels[6] * texels[6]);
@@ -94,7 +91,7 @@ void slices_encode(const float *texels, size_t count, bool straight, bool unit, 
         for (int k = 0; k < 3; k++)
             normal[i][k] =
                 (uint8_t)(128 + lrintf(127 * fminf(fmaxf(scale * texels[4 + k], -1), 1)));
-        normal[i][3] = byte_of(texels[7] * inverse);
+        normal[i][3] = color_byte(texels[7] * inverse);
     }
 }
 

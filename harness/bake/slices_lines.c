@@ -1,7 +1,7 @@
 /* One line of sight through a plant: which hits count, in which slab, how they look. */
 #include "bake/slices_lines.h"
 
-#include "truth/reference_parts.h"
+#include "plant/texture.h"
 
 #include <math.h>
 #include <string.h>

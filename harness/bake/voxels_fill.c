@@ -1,7 +1,7 @@
 /* Triangles to voxels: parallel rays along three axes, one bit a ray and voxel. */
 #include "bake/voxels_parts.h"
 
-#include "truth/reference_parts.h"
+#include "plant/texture.h"
 
 #include <math.h>
 #include <stdlib.h>

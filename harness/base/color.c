@@ -1,4 +1,4 @@
-/* Display encoding: the sRGB curve, IEC 61966-2-1:1999, 5.2. */
+/* The sRGB curve, IEC 61966-2-1:1999, 5.2, and bytes of linear values. */
 #include "base/color.h"
 
 #include <math.h>
@@ -18,4 +18,9 @@ float srgb_decode(float display)
 {
     float x = unit_clamp(display);
     return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
+}
+
+uint8_t color_byte(float value)
+{
+    return (uint8_t)(unit_clamp(value) * 255 + 0.5f);
 }

@@ -45,11 +45,6 @@ struct traced_scene {
 enum status traced_scene_build(struct arena *arena, const struct scene *scene, int threads,
                                struct traced_scene *traced, struct error *error);
 
-/* Bilinear, wrapping; rgba: linear RGB, straight alpha. */
-void texture_sample(const struct texture *texture, const float uv[2], float rgba[4]);
-/* u, v of a point of a triangle from its weights. */
-void mesh_uv(const struct mesh *mesh, uint32_t triangle, float u, float v, float uv[2]);
-
 /* Albedo of the point that a packet's lane has hit on a surface. */
 void surface_albedo(const struct surface *surface, const struct embree_packet *packet, int lane,
                     float albedo[3]);

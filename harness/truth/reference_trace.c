@@ -6,6 +6,7 @@
  * leaves through: a leaf is thin, so light from behind is not blocked by the leaf itself; bark and
  * terrain are solid, so a direction behind the triangle is blocked by the surface itself, even
  * where the smooth normal still faces it. */
+#include "plant/texture.h"
 #include "truth/reference_parts.h"
 #include "truth/sampler.h"
 
