@@ -6,9 +6,11 @@
 #include "base/random.h"
 #include "wall/image.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -309,6 +311,19 @@ static void test_coloring__is_the_same_from_any_number_of_threads(void **state)
     arena_destroy(arena);
 }
 
+/* Removes a folder of files. */
+static void folder_remove(const char *folder)
+{
+    struct dirent *entry;
+    DIR *files = opendir(folder);
+    assert_non_null(files);
+    while ((entry = readdir(files)))
+        if (entry->d_name[0] != '.')
+            assert_int_equal(unlinkat(dirfd(files), entry->d_name, 0), 0);
+    closedir(files);
+    assert_int_equal(rmdir(folder), 0);
+}
+
 /* Files say the same as memory: axis-aligned cameras come back to the bit, turned ones to rounding.
  */
 static void test_images__of_a_plant_give_the_voxels_of_the_plant(void **state)
@@ -354,6 +369,7 @@ static void test_images__of_a_plant_give_the_voxels_of_the_plant(void **state)
             fail_msg("%s", error.text);
         assert_int_equal(mesh->triangles_count, 2 * loaded.voxels_count);
     }
+    folder_remove(folder);
     arena_destroy(arena);
 }
 
@@ -400,6 +416,7 @@ static void test_images__distances_along_rays_become_depths(void **state)
         assert_float_equal(point[0], 1 + 4 * (2 * (i % SIDE + 0.5) / SIDE - 1) * half, 1e-5);
         assert_float_equal(normal[2], 1, 1e-5);
     }
+    folder_remove(folder);
     arena_destroy(arena);
 }
 

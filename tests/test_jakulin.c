@@ -33,18 +33,21 @@ static int close_fixture(void **state)
 static void check_coverage(struct fixture *f, const char *options, double allowed)
 {
     static const float elevations[2] = {0, 0.5f};
+    struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
+    struct studio studio;
+    studio_open(&studio, f->arena, f->method, options, LOD_HIGH, scene, lit);
     for (int e = 0; e < 2; e++)
         for (int a = 0; a < 6; a++) {
-            struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
             struct view view = tree_view(scene, (float)a * 1.0471976f, elevations[e], 300, 9);
             struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-            struct frame *drawn = tree_draw(f->arena, f->method, options, scene, lit, &view, NULL);
+            struct frame *drawn = studio_draw(&studio, &view);
             double covered = tree_mean(truth, 3), ratio = tree_mean(drawn, 3) / covered;
             double off = tree_difference(drawn, truth, false) / covered;
             if (fabs(ratio - 1) > allowed || off > 0.4)
                 fail_msg("azimuth %d, elevation %d: %.3f of the coverage, off by %.3f", a, e, ratio,
                          off);
         }
+    studio_close(&studio);
 }
 
 static void test_jakulin__coverage_is_the_plants_from_all_sides(void **state)
@@ -89,16 +92,19 @@ static void test_jakulin__turning_around_a_crown_never_jumps(void **state)
         mesh->parts[0].element_first[i] -= bark;
     struct plant *crown = plant_from_mesh(f->arena, "crown", mesh);
     struct scene *scene = tree_scene(f->arena, crown, 1, 1);
+    struct studio studio;
+    studio_open(&studio, f->arena, f->method, "", LOD_HIGH, scene, lit);
     struct frame *last = NULL;
     double sum = 0, most = 0;
     for (int i = 0; i <= STEPS; i++) {
         struct view view = tree_view(scene, (float)i * (float)M_PI / 96, 0.2f, 300, 9);
-        struct frame *frame = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+        struct frame *frame = studio_draw(&studio, &view);
         double step = last ? tree_difference(frame, last, false) : 0;
         sum += step;
         most = fmax(most, step);
         last = frame;
     }
+    studio_close(&studio);
     assert_true(sum > 0);
     assert_true(most < 2 * sum / STEPS);
 }

@@ -28,53 +28,6 @@ static int close_fixture(void **state)
     return 0;
 }
 
-/* The method made ready once, for pictures of a scene from many sides. */
-struct studio {
-    struct error error;
-    struct workspace workspace;
-    struct target target;
-    const struct method *method;
-    void *state;
-};
-
-static void studio_open(struct studio *studio, const struct fixture *f, const char *options,
-                        enum lod lod, const struct scene *scene, unsigned effects)
-{
-    memset(studio, 0, sizeof *studio);
-    studio->method = f->method;
-    struct workspace *workspace = &studio->workspace;
-    void *values = arena_alloc(f->arena, 1, f->method->options_size);
-    options_default(f->method->options, values);
-    *workspace = (struct workspace){.arena = f->arena,
-                                    .error = &studio->error,
-                                    .effects = effects,
-                                    .lod = lod,
-                                    .format = TARGET_RGBA32F,
-                                    .threads = 2};
-    if (options_parse(f->method->options, options, values, &studio->error) != STATUS_OK ||
-        gl_context_create(NULL, 2, &workspace->gl, &studio->error) != STATUS_OK ||
-        gl_target(workspace->gl, TREE_WIDTH, TREE_HEIGHT, TARGET_RGBA32F, &studio->target,
-                  &studio->error) != STATUS_OK ||
-        f->method->prepare(workspace, scene, values, &studio->state) != STATUS_OK)
-        fail_msg("%s", studio->error.text);
-}
-
-static struct frame *studio_draw(struct studio *studio, const struct view *view)
-{
-    struct frame *frame = frame_create(studio->workspace.arena, TREE_WIDTH, TREE_HEIGHT, false);
-    if (studio->method->draw(&studio->workspace, studio->state, view, &studio->target) != STATUS_OK)
-        fail_msg("%s", studio->error.text);
-    gl_target_read(studio->workspace.gl, &studio->target, frame->rgba);
-    if (frame_check(frame, &studio->error) != STATUS_OK)
-        fail_msg("%s", studio->error.text);
-    return frame;
-}
-
-static void studio_close(struct studio *studio)
-{
-    gl_context_destroy(studio->workspace.gl);
-}
-
 /* A board of one kind, 6 m x 6 m, in the middle of what tree_view shows; its front (the side that
  * its triangles turn to and its normal) along an axis, sign 1 or -1. */
 static struct plant *board_plant(struct arena *arena, int axis, float sign, enum material_kind kind)
@@ -129,7 +82,7 @@ test_shaded_texels__coverage_is_right_from_twelve_azimuths_and_three_elevations(
     static const float elevations[3] = {0, 0.6f, 1.2f};
     struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
     struct studio studio;
-    studio_open(&studio, f, "", LOD_HIGH, scene, lit);
+    studio_open(&studio, f->arena, f->method, "", LOD_HIGH, scene, lit);
     for (int e = 0; e < 3; e++)
         for (int a = 0; a < 12; a++) {
             struct view view = tree_view(scene, (float)a * 0.5235988f, elevations[e], 300, 9);
@@ -151,7 +104,8 @@ static void test_shaded_texels__along_the_axes_the_outline_is_the_plants(void **
     struct fixture *f = *state;
     struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
     struct studio studio;
-    studio_open(&studio, f, "resolution=256,texel=0.5", LOD_HIGH, scene, lit);
+    studio_open(&studio, f->arena, f->method, "slices=32,resolution=256,texel=0.5", LOD_HIGH, scene,
+                lit);
     for (int k = 0; k < 6; k++) {
         struct view view = axis_view(scene, k % 3, k < 3 ? 1 : -1);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
@@ -179,7 +133,8 @@ static void test_shaded_texels__a_board_is_lit_by_the_closed_form(void **state)
         struct scene *scene = tree_scene(f->arena, plant, 1, 0);
         struct studio studio;
         unsigned effects = EFFECT_AMBIENT | (two ? EFFECT_TWO_SIDED : 0u);
-        studio_open(&studio, f, "slices=8,resolution=32", LOD_HIGH, scene, effects);
+        studio_open(&studio, f->arena, f->method, "slices=8,resolution=32", LOD_HIGH, scene,
+                    effects);
         for (int s = 0; s < 6; s++) {
             float eye = s % 2 ? 1 : -1;
             static const float suns[6][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},
@@ -209,7 +164,7 @@ static void test_shaded_texels__light_follows_the_sun_as_the_reference_does(void
     for (int e = 0; e < 2; e++) {
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 0);
         struct studio studio;
-        studio_open(&studio, f, "", LOD_HIGH, scene, effects[e]);
+        studio_open(&studio, f->arena, f->method, "", LOD_HIGH, scene, effects[e]);
         for (int k = 0; k < 8; k++) {
             scene->sun.azimuth_rad = scene->sun.end_azimuth_rad = (float)k * 0.7853982f;
             scene->hash = 100 + (uint64_t)k;
@@ -252,13 +207,13 @@ static void test_shaded_texels__naive_and_fast_draw_the_same_picture(void **stat
     scene->instances[1].rotation_rad = 2;
     struct view view = tree_view(scene, 0.4f, 0.5f, 300, 12);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-    static const char *const options[] = {"path=naive",
-                                          "path=naive,add=batches",
-                                          "path=naive,add=rectangles",
-                                          "path=naive,add=even",
-                                          "path=naive,add=bilinear",
-                                          "path=fast",
-                                          "path=fast,filter=trilinear"};
+    static const char *const options[] = {"slices=32,resolution=64,path=naive",
+                                          "slices=32,resolution=64,path=naive,add=batches",
+                                          "slices=32,resolution=64,path=naive,add=rectangles",
+                                          "slices=32,resolution=64,path=naive,add=even",
+                                          "slices=32,resolution=64,path=naive,add=bilinear",
+                                          "slices=32,resolution=64,path=fast",
+                                          "slices=32,resolution=64,path=fast,filter=trilinear"};
     struct frame *naive = NULL;
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
         struct frame *drawn = tree_draw(f->arena, f->method, options[i], scene, lit, &view, NULL);
@@ -305,7 +260,7 @@ static void test_shaded_texels__interpolated_slices_keep_the_opacity(void **stat
     struct frame *frames[2];
     struct view view = tree_view(scene, 0.5f, 0.1f, 300, 9);
     for (int i = 0; i < 2; i++) {
-        studio_open(&studio, f,
+        studio_open(&studio, f->arena, f->method,
                     i ? "slices=16,interpolate=on,criterion=0.1" : "slices=16,criterion=0.1",
                     LOD_AUTO, scene, lit);
         frames[i] = studio_draw(&studio, &view);
@@ -326,8 +281,8 @@ static void test_shaded_texels__smooth_changes_do_not_jump(void **state)
     for (int smooth = 0; smooth < 2; smooth++) {
         struct studio studio;
         struct frame *last = NULL;
-        studio_open(&studio, f, smooth ? "criterion=4,smooth=on" : "criterion=4", LOD_AUTO, scene,
-                    lit);
+        studio_open(&studio, f->arena, f->method, smooth ? "criterion=4,smooth=on" : "criterion=4",
+                    LOD_AUTO, scene, lit);
         for (int step = 0; step < STEPS; step++) {
             /* round the corner between two stacks, nearly as far away all the time */
             struct view view =
@@ -359,7 +314,8 @@ static void test_shaded_texels__trees_in_each_other_cover_as_in_the_reference(vo
         scene->instances[1].scale = k == 0 ? 0.8f : 1;
         struct view view = tree_view(scene, 0.3f, 0.2f, 300, 11);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        struct frame *drawn = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+        struct frame *drawn =
+            tree_draw(f->arena, f->method, "resolution=64", scene, lit, &view, NULL);
         double ratio = tree_mean(drawn, 3) / tree_mean(truth, 3);
         double light = tree_mean(drawn, 1) / tree_mean(truth, 1);
         if (fabs(ratio - 1) > 0.12 || fabs(light - 1) > 0.15)
@@ -371,19 +327,22 @@ static void test_shaded_texels__trees_in_each_other_cover_as_in_the_reference(vo
 static void test_shaded_texels__an_eye_in_the_crown_sees_the_crown(void **state)
 {
     struct fixture *f = *state;
-    static const char *const options[] = {"near=0", "path=naive",
-                                          "near=0,interpolate=on,smooth=on"};
-    for (int i = 0; i < 3; i++)
+    static const char *const options[] = {"resolution=64,near=0", "resolution=64,path=naive",
+                                          "resolution=64,near=0,interpolate=on,smooth=on"};
+    struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
+    for (int i = 0; i < 3; i++) {
+        struct studio studio;
+        studio_open(&studio, f->arena, f->method, options[i], LOD_HIGH, scene, lit);
         for (int k = 0; k < 4; k++) {
-            struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
             static const float distances[4] = {2, 0.5f, 1e-3f, 1e-7f};
             struct view view = tree_view(scene, 0.7f, 0.3f, distances[k], distances[k]);
-            struct frame *drawn =
-                tree_draw(f->arena, f->method, options[i], scene, lit, &view, NULL);
+            struct frame *drawn = studio_draw(&studio, &view);
             if (k < 2)
                 assert_true(tree_mean(drawn, 3) >
                             0.6 * tree_mean(tree_reference(f->arena, scene, lit, &view), 3));
         }
+        studio_close(&studio);
+    }
 }
 
 static void test_shaded_texels__terrain_in_front_hides_and_behind_does_not(void **state)
@@ -396,12 +355,12 @@ static void test_shaded_texels__terrain_in_front_hides_and_behind_does_not(void 
     scene->terrain = (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}};
     struct view view = tree_view(scene, 0.6f, 0.5f, 300, 9);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-    struct frame *drawn = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+    struct frame *drawn = tree_draw(f->arena, f->method, "resolution=64", scene, lit, &view, NULL);
     assert_true(fabs(tree_mean(drawn, 3) / tree_mean(truth, 3) - 1) < 0.1);
     for (int i = 0; i < 4; i++)
         heights[i] = 12; /* a plateau between the eye below it and the tree */
     view = tree_view(scene, 0.6f, 1.2f, 300, 9);
-    drawn = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+    drawn = tree_draw(f->arena, f->method, "resolution=64", scene, lit, &view, NULL);
     assert_true(tree_mean(drawn, 3) == 0);
 }
 
@@ -411,12 +370,12 @@ static void test_shaded_texels__eight_bits_do_not_darken(void **state)
     struct fixture *f = *state;
     struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
     struct view view = tree_view(scene, 0.6f, 0.3f, 300, 9);
-    struct frame *exact = tree_draw(f->arena, f->method, "", scene, lit, &view, NULL);
+    struct frame *exact = tree_draw(f->arena, f->method, "resolution=64", scene, lit, &view, NULL);
     static const double limits[2] = {0.02, 0.002};
     for (int i = 0; i < 2; i++) {
         struct frame *drawn =
-            tree_draw_as(f->arena, f->method, "", LOD_HIGH, i ? TARGET_RGBA16F : TARGET_RGBA8,
-                         scene, lit, &view, NULL);
+            tree_draw_as(f->arena, f->method, "resolution=64", LOD_HIGH,
+                         i ? TARGET_RGBA16F : TARGET_RGBA8, scene, lit, &view, NULL);
         double light = tree_mean(drawn, 1) / tree_mean(exact, 1);
         if (fabs(light - 1) > limits[i])
             fail_msg("%s: %.4f of the light", i ? "rgba16f" : "rgba8", light);

@@ -141,6 +141,59 @@ static inline struct view tree_view(const struct scene *scene, float azimuth_rad
     return view;
 }
 
+/* A method made ready once in a context of its own, for pictures of a scene from many sides. */
+struct studio {
+    struct error error;
+    struct workspace workspace;
+    struct target target;
+    const struct method *method;
+    void *state;
+};
+
+static inline void studio_prepare(struct studio *studio, const char *options,
+                                  const struct scene *scene, int width_px, int height_px)
+{
+    const struct method *method = studio->method;
+    struct workspace *workspace = &studio->workspace;
+    void *values = arena_alloc(workspace->arena, 1, method->options_size);
+    workspace->error = &studio->error;
+    workspace->threads = 2;
+    options_default(method->options, values);
+    if (options_parse(method->options, options, values, &studio->error) != STATUS_OK ||
+        gl_context_create(NULL, 2, &workspace->gl, &studio->error) != STATUS_OK ||
+        gl_target(workspace->gl, width_px, height_px, workspace->format, &studio->target,
+                  &studio->error) != STATUS_OK ||
+        method->prepare(workspace, scene, values, &studio->state) != STATUS_OK)
+        fail_msg("%s", studio->error.text);
+}
+
+static inline void studio_open(struct studio *studio, struct arena *arena,
+                               const struct method *method, const char *options, enum lod lod,
+                               const struct scene *scene, unsigned effects)
+{
+    *studio = (struct studio){
+        .method = method,
+        .workspace = {.arena = arena, .effects = effects, .lod = lod, .format = TARGET_RGBA32F}};
+    studio_prepare(studio, options, scene, TREE_WIDTH, TREE_HEIGHT);
+}
+
+static inline struct frame *studio_draw(struct studio *studio, const struct view *view)
+{
+    struct frame *frame =
+        frame_create(studio->workspace.arena, view->width_px, view->height_px, false);
+    if (studio->method->draw(&studio->workspace, studio->state, view, &studio->target) != STATUS_OK)
+        fail_msg("%s", studio->error.text);
+    gl_target_read(studio->workspace.gl, &studio->target, frame->rgba);
+    if (frame_check(frame, &studio->error) != STATUS_OK)
+        fail_msg("%s", studio->error.text);
+    return frame;
+}
+
+static inline void studio_close(struct studio *studio)
+{
+    gl_context_destroy(studio->workspace.gl);
+}
+
 /* One picture in a context of its own. counters may be NULL. */
 static inline struct frame *tree_draw_as(struct arena *arena, const struct method *method,
                                          const char *options, enum lod lod,
@@ -148,34 +201,15 @@ static inline struct frame *tree_draw_as(struct arena *arena, const struct metho
                                          unsigned effects, const struct view *view,
                                          struct gl_counters *counters)
 {
-    struct error error = {0};
-    struct gl *gl;
-    if (gl_context_create(NULL, 2, &gl, &error) != STATUS_OK)
-        fail_msg("%s", error.text);
-    struct workspace workspace = {.arena = arena,
-                                  .gl = gl,
-                                  .error = &error,
-                                  .effects = effects,
-                                  .lod = lod,
-                                  .format = format,
-                                  .threads = 2};
-    void *values = arena_alloc(arena, 1, method->options_size), *state = NULL;
-    struct target target;
-    options_default(method->options, values);
-    struct frame *frame = frame_create(arena, view->width_px, view->height_px, false);
-    if (options_parse(method->options, options, values, &error) != STATUS_OK ||
-        gl_target(gl, view->width_px, view->height_px, format, &target, &error) != STATUS_OK ||
-        method->prepare(&workspace, scene, values, &state) != STATUS_OK)
-        fail_msg("%s", error.text);
-    gl_counters_reset(gl);
-    if (method->draw(&workspace, state, view, &target) != STATUS_OK)
-        fail_msg("%s", error.text);
+    struct studio studio = {
+        .method = method,
+        .workspace = {.arena = arena, .effects = effects, .lod = lod, .format = format}};
+    studio_prepare(&studio, options, scene, view->width_px, view->height_px);
+    gl_counters_reset(studio.workspace.gl);
+    struct frame *frame = studio_draw(&studio, view);
     if (counters)
-        *counters = gl->counters;
-    gl_target_read(gl, &target, frame->rgba);
-    if (frame_check(frame, &error) != STATUS_OK)
-        fail_msg("%s", error.text);
-    gl_context_destroy(gl);
+        *counters = studio.workspace.gl->counters;
+    studio_close(&studio);
     return frame;
 }
 
