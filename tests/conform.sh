@@ -62,7 +62,7 @@ is 'JSON is one object, a line, with each row and the counts' $? -eq 0
 try --check '('
 is 'a pattern that is none is usage' $rc -eq 64
 TREELINE_GL=none try null
-is 'no OpenGL is the machine'"'"'s fault, 69' $rc -eq 69
+is 'an unknown back end is bad input, 65' $rc -eq 65
 is 'told in one line' "$(grep -c "'none' is not one of" "$work/err")" -eq 1
 try --timeout 0
 is 'a limit of nothing is usage' $rc -eq 64

@@ -22,8 +22,8 @@ void cover_look(struct cover *cover, float elevation_rad, float margin_m);
 /* Square metres that all triangles of level 0 cover, the mean of the sides. */
 double cover_plant(struct cover *cover);
 
-/* `kept` elements from `begin` on (around the end) as prune.h and triangles.glsl scale them; bark at
- * least as wide as `stout` is drawn whole, at a level, instead of the run's own. */
+/* `kept` elements from `begin` on (around the end) as prune.h and triangles.glsl scale them; bark
+ * at least as wide as `stout` is drawn whole, at a level, instead of the run's own. */
 struct cover_run {
     const struct prune *prune;
     uint32_t begin;

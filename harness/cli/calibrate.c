@@ -100,7 +100,8 @@ int verb_calibrate(int argc, char **argv)
         "",
         "Measures what this machine can do at most: fill, triangles, draw calls, rays, memory.\v"
         "Rates are medians of 11 interleaved repeats with their 95 % intervals. A run measures the "
-        "same every few rounds and keeps it in its results; `treeline report` says of every cell which of "
+        "same every few rounds and keeps it in its results; `treeline report` says of every cell "
+        "which of "
         "these limits bounds it and what share of it the cell reaches.",
         NULL,
         NULL,

@@ -1,6 +1,7 @@
 /* treeline conform: what the contract promises, checked on methods and plugins. */
 #include "conform/conform.h"
 #include "cli/cli.h"
+#include "wall/gl.h"
 #include "wall/json.h"
 
 #include <stdio.h>
@@ -92,13 +93,24 @@ static void totals_tell(struct listener *listener, const char *const keys[])
     printf("%s\n", listener->out ? json_out_text(listener->out) : "");
 }
 
+/* An unknown back end is no method's failure. */
+static enum status backend_check(const char *backend, struct error *error)
+{
+    const char *named = getenv("TREELINE_GL");
+    if (backend)
+        return gl_backend_check(backend, "--backend", error);
+    return named && *named ? gl_backend_check(named, "TREELINE_GL", error) : STATUS_OK;
+}
+
 /* Every method in turn; the exit code is the first failure's. */
 static int conform(struct arena *arena, const struct request *request)
 {
     static const char *const keys[] = {"passed", "skipped", "refused", "failed"};
     struct error error = {0};
     struct listener listener = {.out = request->json ? json_out(arena) : NULL};
-    enum status result = STATUS_OK, one, status = STATUS_OK;
+    enum status result = STATUS_OK, one, status = backend_check(request->conform.backend, &error);
+    if (status)
+        return cli_fail(&error);
     if (listener.out) {
         json_open(listener.out, NULL, '{');
         json_put_number(listener.out, "version", 1);

@@ -19,10 +19,10 @@ enum {
 };
 
 /* What frames did of that which the harness cannot count itself. A method without OpenGL adds
- * (workspace->tally.rays += ...) what each call of draw did, summed in its threads first, so that counting
- * costs no time; for the same view the same figures. The harness takes the difference over a
- * picture; what stays 0 is not counted. With the machine's calibrated rates it tells what bounds a
- * cell (results/limit.h), so count what any program with this algorithm had to do, not waste. */
+ * (workspace->tally.rays += ...) what each call of draw did, summed in its threads first, so that
+ * counting costs no time; for the same view the same figures. The harness takes the difference over
+ * a picture; what stays 0 is not counted. With the machine's calibrated rates it tells what bounds
+ * a cell (results/limit.h), so count what any program with this algorithm had to do, not waste. */
 struct method_tally {
     uint64_t rays;           /* to the nearest triangle (embree_intersect), lanes, not packets */
     uint64_t occlusion_rays; /* to any triangle (embree_occluded) */

@@ -16,7 +16,8 @@ static const struct option table[] = {
 };
 /* clang-format on */
 
-/* A species: the size of its double cone at scale 1, its colour, and where its trees begin in the buffer.
+/* A species: the size of its double cone at scale 1, its colour, and where its trees begin in the
+ * buffer.
  */
 struct kind {
     float radius_m, height_m, albedo[3];
