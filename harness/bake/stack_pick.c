@@ -63,7 +63,7 @@ static struct seen see(const struct stack_side *side, const float eye[3], const 
 static void best_sides(const struct stack *stack, const struct stack_plant *plant,
                        const float eye[3], const float forward[3], struct seen best[2])
 {
-    best[0] = best[1] = (struct seen){.cosine = -1};
+    best[0] = best[1] = (struct seen){.side = plant->sides, .cosine = -1};
     for (size_t d = 0; d < stack->request.bake.directions_count; d++) {
         struct seen seen = see(&plant->sides[d], eye, forward, plant->bound.radius_m);
         if (seen.cosine > best[0].cosine) {

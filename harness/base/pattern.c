@@ -20,10 +20,14 @@ static double repeats(const char *text)
 {
     double largest = 1;
     while (*text && *text != '}') {
+        if (!isdigit((unsigned char)*text)) {
+            text++;
+            continue;
+        }
         char *end;
-        double value = isdigit((unsigned char)*text) ? (double)strtoul(text, &end, 10) : 0;
+        double value = (double)strtoul(text, &end, 10);
         largest = value > largest ? value : largest;
-        text = isdigit((unsigned char)*text) ? end : text + 1;
+        text = end;
     }
     return largest;
 }

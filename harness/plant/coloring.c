@@ -255,7 +255,8 @@ static void walk_through(const struct volume *volume, const struct ray *ray, flo
     int behind = 0;
     if (!walk_begin(volume, ray, &walk))
         return;
-    for (float at = 0; at < walk.end; at = walk_on(volume, &walk)) {
+    float at = 0;
+    while (at < walk.end) {
         uint32_t *kept = &volume->cells[cell_index(volume, walk.cell)], state;
         behind +=
             behind > 0 || at >= depth || (end && memcmp(walk.cell, end, sizeof walk.cell) == 0);
@@ -271,6 +272,7 @@ static void walk_through(const struct volume *volume, const struct ray *ray, flo
 #pragma omp atomic
             volume->gathered[state - COLORING_FIRST].view_blocked++;
         }
+        at = walk_on(volume, &walk);
     }
 }
 
