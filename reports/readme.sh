@@ -49,7 +49,7 @@ def name(r):
 
 def machine(run):
     records = [json.loads(line) for line in open(run + "/cells.jsonl")]
-    head, cell = records[0], next(r for r in records if r.get("status") == "ok" and "renderer" in r)
+    head, cell = records[0], next(r for r in records if r.get("status") == "ok" and r.get("gl_version"))
     return f'{head["cpu"]}, {head["cores"]} cores, {cell["renderer"]}, Mesa {cell["gl_version"].split()[-1]}, revision {head["revision"]}'
 
 def fps(r):
