@@ -156,7 +156,8 @@ static void put_terminals(struct plot *plot)
     fprintf(gp,
             "set key maxcols 1\nset terminal svg size %d,%d dynamic font \"sans-serif,12\"\n"
             "set output \"%s-narrow.svg\"\nreplot\nset output\n",
-            NARROW_WIDTH_PX, NARROW_HEIGHT_PX + (plot->columns > 1 ? 3 : 1) * extra_px, name);
+            NARROW_WIDTH_PX, NARROW_HEIGHT_PX + (plot->columns > 1 ? plot->columns : 1) * extra_px,
+            name);
 }
 
 void plot_discard(struct plot *plot)
@@ -181,8 +182,11 @@ enum status plot_close(struct plot *plot, struct figure *figure, struct error *e
     size_t size = 0;
     FILE *whole = open_memstream(&text, &size);
     fprintf(whole,
-            "set terminal svg size %d,%d dynamic font \"sans-serif,13\"\nset output \"%s.svg\"\n%s",
-            WIDTH_PX, HEIGHT_PX + (plot->key_rows + 1) * KEY_PX, plot->name, plot->script);
+            "set terminal svg size %d,%d dynamic font \"sans-serif,13\"\nset output \"%s.svg\"\n",
+            WIDTH_PX, HEIGHT_PX + (plot->key_rows + 1) * KEY_PX, plot->name);
+    if (plot->columns > 1)
+        fprintf(whole, "set key maxcols %d\n", plot->columns);
+    fputs(plot->script, whole);
     fclose(plot->gp);
     free(plot->script);
     enum status written =

@@ -171,10 +171,14 @@ static void trade_lines(struct trade *trade)
 
 static void key_of_methods(struct plot *plot, const bool *used)
 {
+    enum { LONG_NAME = 11 }; /* of such three in a row do not fit */
     int entries = 1;
+    size_t longest = 0;
     for (size_t m = 0; m < plot->book->methods_count; m++) {
         if (!used[m])
             continue;
+        size_t length = strlen(plot->book->methods[m]);
+        longest = length > longest ? length : longest;
         plot_curve(plot);
         fprintf(plot->gp,
                 "keyentry with points pointtype %d pointsize 0.9 linecolor rgb \"#%06x\" "
@@ -183,8 +187,8 @@ static void key_of_methods(struct plot *plot, const bool *used)
         plot_text(plot->gp, plot->book->methods[m]);
         entries++;
     }
-    plot->key_rows += (entries + 2) / 3;
-    plot->columns = 3;
+    plot->columns = longest > LONG_NAME ? 2 : 3;
+    plot->key_rows += (entries + plot->columns - 1) / plot->columns;
 }
 
 enum status plot_trade(const struct book *book, const struct group *group, bool full,
