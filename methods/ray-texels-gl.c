@@ -3,6 +3,7 @@
  * seen: hidden trees cost nothing, and the target is blended once. */
 #include "bake/backdrop.h"
 #include "bake/cull.h"
+#include "bake/march_tree.h"
 #include "bake/tiles.h"
 #include "bake/voxels.h"
 #include "method/method.h"
@@ -43,11 +44,6 @@ struct texels {
     uint32_t albedo; /* three times 10 bits */
 };
 
-struct tree {
-    float position_m[3], cosine, sine, scale;
-    uint32_t species;
-};
-
 struct state {
     const struct scene *scene;
     struct options options;
@@ -58,7 +54,7 @@ struct state {
     struct tiles *tiles;
     struct tiles_rect *rects; /* of the trees in view, in their order */
     struct texels *texels;
-    struct tree *trees; /* one an instance */
+    struct march_tree *trees; /* one an instance */
     GLuint program, vertices, framebuffer;
     GLuint buffers[BUFFERS], textures[BUFFERS];
 };
@@ -162,17 +158,8 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     state->tiles = tiles_create(workspace->arena, count);
     state->rects = ARENA_ARRAY(workspace->arena, struct tiles_rect, count);
     state->texels = ARENA_ARRAY(workspace->arena, struct texels, count);
-    state->trees = ARENA_ARRAY(workspace->arena, struct tree, count);
-    for (size_t i = 0; i < count; i++) {
-        const struct instance *from = &scene->instances[i];
-        state->trees[i] = (struct tree){
-            .position_m = {from->position_m[0], from->position_m[1], from->position_m[2]},
-            .cosine = cosf(from->rotation_rad),
-            .sine = sinf(from->rotation_rad),
-            .scale = from->scale,
-            .species = from->species,
-        };
-    }
+    state->trees = ARENA_ARRAY(workspace->arena, struct march_tree, count);
+    march_trees_fill(scene, state->trees);
     state->vertices = gl_vertex_array(gl);
     state->framebuffer = gl_framebuffer(gl);
     const char *defines =
@@ -188,85 +175,11 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     return status ? status : gl_check(gl, "ray-texels-gl", workspace->error);
 }
 
-static float dot3(const float a[3], const float b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* A picture's constants. */
 struct picture {
     const struct view *view;
-    float focal_px, fog_density, bias;
+    float focal_px, fog_density;
 };
-
-/* The level whose voxels are about as large as pixels. */
-static uint32_t level_of(const struct picture *picture, const struct tree *tree,
-                         const struct voxels *volume, float depth_m)
-{
-    float pixel_m = fmaxf(depth_m, picture->view->near_m) / picture->focal_px;
-    float ratio = pixel_m / (tree->scale * volume->levels[0].voxel_m);
-    float level = floorf(log2f(ratio) + picture->bias);
-    return (uint32_t)fminf(fmaxf(level, 0), (float)(volume->levels_count - 1));
-}
-
-/* The middle of a level's box from the eye, and its half extents' vectors. */
-struct box {
-    float middle_m[3], half_m[3][3];
-};
-
-static struct box box_of(const struct picture *picture, const struct tree *tree,
-                         const struct voxels *volume, const struct voxels_level *grid)
-{
-    const float c = tree->cosine, s = tree->sine;
-    const float axes[3][3] = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
-    struct box box;
-    for (int i = 0; i < 3; i++)
-        box.middle_m[i] = tree->position_m[i] - picture->view->eye_m[i];
-    for (int k = 0; k < 3; k++) {
-        float half = 0.5f * (float)grid->size[k] * grid->voxel_m;
-        float place = tree->scale * (volume->origin_m[k] + half);
-        for (int i = 0; i < 3; i++) {
-            box.middle_m[i] += place * axes[k][i];
-            box.half_m[k][i] = tree->scale * half * axes[k][i];
-        }
-    }
-    return box;
-}
-
-/* Its outline on the screen, within low and high (px, from the first pixel's centre, y down); the
- * whole picture where it reaches behind the eye's near plane. False when nothing is before that. */
-struct outline {
-    float low[2], high[2], middle[2];
-    bool before; /* all of it is before the near plane */
-};
-
-static bool outline_of(const struct picture *picture, const struct box *box,
-                       struct outline *outline)
-{
-    const struct view *view = picture->view;
-    const int size_px[2] = {view->width_px, view->height_px};
-    const float down[3] = {-view->up[0], -view->up[1], -view->up[2]};
-    const float *axes[2] = {view->right, down};
-    float middle = dot3(box->middle_m, view->forward), reach = 0;
-    for (int k = 0; k < 3; k++)
-        reach += fabsf(dot3(box->half_m[k], view->forward));
-    outline->before = middle - reach > view->near_m;
-    for (int i = 0; i < 2; i++) {
-        outline->low[i] = 0;
-        outline->high[i] = (float)size_px[i];
-        if (!outline->before)
-            continue;
-        float slope = dot3(box->middle_m, axes[i]) / middle, spread = 0;
-        for (int k = 0; k < 3; k++)
-            spread +=
-                fabsf(dot3(box->half_m[k], axes[i]) - slope * dot3(box->half_m[k], view->forward));
-        spread *= picture->focal_px / (middle - reach);
-        outline->middle[i] = 0.5f * (float)(size_px[i] - 1) + picture->focal_px * slope;
-        outline->low[i] = outline->middle[i] - spread;
-        outline->high[i] = outline->middle[i] + spread;
-    }
-    return middle + reach > view->near_m;
-}
 
 static int16_t pixel_of(float at_px, int size_px)
 {
@@ -282,35 +195,21 @@ static void rect_between(struct tiles_rect *rect, int axis, float first, float l
 }
 
 /* A tree about as small as a pixel covers its share of the four pixels around its middle. */
-static void place_small(const struct picture *picture, const struct outline *outline,
-                        const struct box *box, float side_m, struct tiles_rect *rect,
+static void place_small(const struct picture *picture, const struct march_outline *outline,
+                        const struct march_box *box, float side_m, struct tiles_rect *rect,
                         struct texels *texels)
 {
-    const int size_px[2] = {picture->view->width_px, picture->view->height_px};
-    float depth = dot3(box->middle_m, picture->view->forward);
+    const struct view *view = picture->view;
+    const float *forward = view->forward, *middle = box->middle_m;
+    float depth = middle[0] * forward[0] + middle[1] * forward[1] + middle[2] * forward[2];
     float side_px = picture->focal_px * side_m / depth;
     for (int i = 0; i < 2; i++) {
         float first = floorf(outline->middle[i]);
-        rect_between(rect, i, first, first + 1, size_px[i]);
+        rect_between(rect, i, first, first + 1, i ? view->height_px : view->width_px);
         texels->where[i] = outline->middle[i];
     }
     texels->where[2] = side_px * side_px;
     texels->per_m = depth;
-}
-
-/* The eye in voxels from the box's corner. */
-static void place_box(const struct picture *picture, const struct tree *tree,
-                      const struct voxels *volume, float voxel_m, struct texels *texels)
-{
-    const float per_m = texels->per_m = 1 / (tree->scale * voxel_m);
-    float eye[3];
-    for (int i = 0; i < 3; i++)
-        eye[i] = picture->view->eye_m[i] - tree->position_m[i];
-    texels->where[0] = per_m * (eye[0] * tree->cosine - eye[2] * tree->sine);
-    texels->where[1] = per_m * eye[1];
-    texels->where[2] = per_m * (eye[0] * tree->sine + eye[2] * tree->cosine);
-    for (int i = 0; i < 3; i++)
-        texels->where[i] -= volume->origin_m[i] / voxel_m;
 }
 
 static uint32_t pack_10(const uint32_t values[3])
@@ -322,29 +221,32 @@ static void see(const struct state *state, const struct picture *picture, uint32
                 float depth_m, struct tiles_rect *rect, struct texels *texels)
 {
     static const float small_px = 0.75f;
-    const int size_px[2] = {picture->view->width_px, picture->view->height_px};
-    const struct tree *tree = &state->trees[number];
+    const struct view *view = picture->view;
+    const struct march_tree *tree = &state->trees[number];
     const struct voxels *volume = state->volumes[tree->species];
-    uint32_t level = level_of(picture, tree, volume, depth_m);
-    const struct voxels_level *grid = &volume->levels[level];
-    struct box box = box_of(picture, tree, volume, &volume->levels[0]);
-    struct outline outline;
-    bool seen = outline_of(picture, &box, &outline);
+    uint32_t level =
+        march_level_of(view, tree, volume, picture->focal_px, state->options.bias, depth_m);
+    struct march_box box = march_box_of(view, tree, volume, 0);
+    struct march_outline outline = march_outline_of(view, &box, picture->focal_px);
     bool small = outline.before && outline.high[0] - outline.low[0] < 2 * small_px &&
                  outline.high[1] - outline.low[1] < 2 * small_px;
-    if (small) {
+    if (small)
         level = volume->levels_count - 1;
-        grid = &volume->levels[level];
-        place_small(picture, &outline, &box, tree->scale * grid->voxel_m, rect, texels);
+    const struct voxels_level *grid = &volume->levels[level];
+    const float voxel_m = tree->scale * grid->voxel_m;
+    if (small) {
+        place_small(picture, &outline, &box, voxel_m, rect, texels);
     } else {
-        place_box(picture, tree, volume, grid->voxel_m, texels);
+        texels->per_m = 1 / voxel_m;
+        march_eye_of(view, tree, volume, level, texels->per_m, texels->where);
         if (level > 0) {
-            box = box_of(picture, tree, volume, grid);
-            seen = outline_of(picture, &box, &outline);
+            box = march_box_of(view, tree, volume, level);
+            outline = march_outline_of(view, &box, picture->focal_px);
         }
+        const int size_px[2] = {view->width_px, view->height_px};
         for (int i = 0; i < 2; i++)
             rect_between(rect, i, ceilf(outline.low[i]), floorf(outline.high[i]),
-                         seen ? size_px[i] : 0);
+                         outline.any ? size_px[i] : 0);
     }
     uint32_t albedo[3];
     for (int c = 0; c < 3; c++)
@@ -357,9 +259,7 @@ static void see(const struct state *state, const struct picture *picture, uint32
     texels->size = pack_10(grid->size) | (uint32_t)small << 30;
     texels->turn[0] = tree->cosine;
     texels->turn[1] = tree->sine;
-    texels->clear = picture->fog_density > 0
-                        ? expf(-picture->fog_density * sqrtf(dot3(box.middle_m, box.middle_m)))
-                        : 1;
+    texels->clear = march_box_clear(&box, picture->fog_density);
     texels->albedo = pack_10(albedo);
 }
 
@@ -371,7 +271,6 @@ static bool upload_trees(struct workspace *workspace, struct state *state, const
         .view = view,
         .focal_px = cull_focal_px(view),
         .fog_density = workspace->effects & EFFECT_FOG ? state->scene->fog.density_per_m : 0,
-        .bias = state->options.bias,
     };
     struct cull_list list = cull_view(state->cull, view, CULL_FRONT_TO_BACK);
     struct tiles *tiles = state->tiles;

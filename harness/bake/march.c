@@ -40,21 +40,6 @@ static march_block *block_named(const char *name)
     return isas[chosen].block;
 }
 
-static void trees_fill(struct march *march, const struct scene *scene)
-{
-    for (size_t i = 0; i < scene->instances_count; i++) {
-        const struct instance *instance = &scene->instances[i];
-        struct march_tree *tree = &march->trees[i];
-        memcpy(tree->position_m, instance->position_m, sizeof tree->position_m);
-        tree->cosine = cosf(instance->rotation_rad);
-        tree->sine = sinf(instance->rotation_rad);
-        tree->scale = instance->scale;
-        tree->species = instance->species;
-        float turns = instance->rotation_rad / 6.2831853f;
-        tree->turn = (uint32_t)((turns - floorf(turns)) * MARCH_TURNS + 0.5f) % MARCH_TURNS;
-    }
-}
-
 static enum status species_fill(struct workspace *workspace, struct plant *plant,
                                 const struct march_options *options, struct march_species *species,
                                 struct cull_bound *bound)
@@ -102,7 +87,7 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
     march->seen = ARENA_ARRAY(workspace->arena, struct march_seen, scene->instances_count);
     if (options->slab > 0)
         march->spans = ARENA_ARRAY(workspace->arena, struct march_span, scene->instances_count);
-    trees_fill(march, scene);
+    march_trees_fill(scene, march->trees);
     march->cull = cull_create(workspace->arena, scene, bounds);
     return STATUS_OK;
 }

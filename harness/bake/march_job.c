@@ -3,54 +3,9 @@
 
 #include <math.h>
 
-/* World to plant: the inverse of instance_matrix's rotation. */
-static void to_plant(const struct march_tree *tree, const float world[3], float scale,
-                     float plant[3])
-{
-    plant[0] = scale * (world[0] * tree->cosine - world[2] * tree->sine);
-    plant[1] = scale * world[1];
-    plant[2] = scale * (world[0] * tree->sine + world[2] * tree->cosine);
-}
-
 static float dot3(const float a[3], const float b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* The middle of a level's box from the eye, and its half extents' vectors. */
-struct box {
-    float middle_m[3], half_m[3][3];
-};
-
-static struct box box_of(const struct march_view *picture, const struct march_tree *tree,
-                         const struct voxels *voxels, uint32_t level)
-{
-    const struct voxels_level *grid = &voxels->levels[level];
-    const float c = tree->cosine, s = tree->sine;
-    const float axes[3][3] = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
-    struct box box;
-    for (int i = 0; i < 3; i++)
-        box.middle_m[i] = tree->position_m[i] - picture->view->eye_m[i];
-    for (int k = 0; k < 3; k++) {
-        float half = 0.5f * (float)grid->size[k] * grid->voxel_m;
-        float place = tree->scale * (voxels->origin_m[k] + half);
-        for (int i = 0; i < 3; i++) {
-            box.middle_m[i] += place * axes[k][i];
-            box.half_m[k][i] = tree->scale * half * axes[k][i];
-        }
-    }
-    return box;
-}
-
-/* The level whose voxels are about as large as pixels. */
-static uint32_t level_of(const struct march_view *picture, const struct march_tree *tree,
-                         const struct voxels *voxels, float depth_m)
-{
-    float pixel_m = fmaxf(depth_m, picture->view->near_m) / picture->focal_px;
-    float level =
-        floorf(log2f(pixel_m / (tree->scale * voxels->levels[0].voxel_m)) + picture->options.bias);
-    float last = (float)(voxels->levels_count - 1);
-    return (uint32_t)fminf(fmaxf(level, 0), last);
 }
 
 static int16_t pixel_of(float at_px, int size_px)
@@ -91,25 +46,6 @@ static struct march_seen see_small(const struct march_view *picture, const struc
     return seen;
 }
 
-/* Half of what a box spreads along an axis of the screen, per depth of 1. slope: of its middle. */
-static float spread_of(const struct box *box, const float axis[3], const float forward[3],
-                       float slope)
-{
-    float spread = 0;
-    for (int k = 0; k < 3; k++)
-        spread += fabsf(dot3(box->half_m[k], axis) - slope * dot3(box->half_m[k], forward));
-    return spread;
-}
-
-/* Half of what a box spreads along a direction. */
-static float reach_of(const struct box *box, const float direction[3])
-{
-    float reach = 0;
-    for (int k = 0; k < 3; k++)
-        reach += fabsf(dot3(box->half_m[k], direction));
-    return reach;
-}
-
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
                             float depth_m)
 {
@@ -119,26 +55,14 @@ struct march_seen march_see(const struct march_view *picture, const struct march
     float radius_m = tree->scale * species->radius_m;
     if (depth_m - radius_m > view->near_m && radius_m * picture->focal_px < small_px * depth_m)
         return see_small(picture, tree);
-    const float down[3] = {-view->up[0], -view->up[1], -view->up[2]};
     struct march_seen seen = {{0, 0}, {-1, -1}, 0};
-    seen.level = (uint8_t)level_of(picture, tree, species->voxels, depth_m);
-    struct box box = box_of(picture, tree, species->voxels, seen.level);
-    float middle = dot3(box.middle_m, view->forward), reach = reach_of(&box, view->forward);
-    if (middle + reach < view->near_m)
-        return seen;
-    for (int i = 0; i < 2; i++) {
-        const float *axis = i ? down : view->right;
-        int size_px = i ? view->height_px : view->width_px;
-        if (middle - reach <= view->near_m) {
-            seen_between(&seen, i, 0, (float)size_px, size_px);
-            continue;
-        }
-        float slope = dot3(box.middle_m, axis) / middle;
-        float spread =
-            spread_of(&box, axis, view->forward, slope) * picture->focal_px / (middle - reach);
-        float at = 0.5f * (float)size_px + picture->focal_px * slope - 0.5f;
-        seen_between(&seen, i, ceilf(at - spread), floorf(at + spread), size_px);
-    }
+    seen.level = (uint8_t)march_level_of(view, tree, species->voxels, picture->focal_px,
+                                         picture->options.bias, depth_m);
+    struct march_box box = march_box_of(view, tree, species->voxels, seen.level);
+    struct march_outline outline = march_outline_of(view, &box, picture->focal_px);
+    for (int i = 0; i < 2 && outline.any; i++)
+        seen_between(&seen, i, ceilf(outline.low[i]), floorf(outline.high[i]),
+                     i ? view->height_px : view->width_px);
     return seen;
 }
 
@@ -147,9 +71,9 @@ struct march_span march_span_of(const struct march_view *picture, const struct m
 {
     const struct voxels *voxels = picture->species[tree->species].voxels;
     uint32_t kept = level < voxels->levels_count ? level : 0;
-    struct box box = box_of(picture, tree, voxels, kept);
+    struct march_box box = march_box_of(picture->view, tree, voxels, kept);
     float middle_m = dot3(box.middle_m, picture->view->forward);
-    float reach_m = reach_of(&box, picture->view->forward);
+    float reach_m = march_box_reach(&box, picture->view->forward);
     return (struct march_span){.near_m = middle_m - reach_m,
                                .far_m = middle_m + reach_m,
                                .voxel_m = tree->scale * voxels->levels[kept].voxel_m};
@@ -181,7 +105,7 @@ static void light_fill(const struct march_view *picture, const struct march_tree
 {
     const struct scene *scene = picture->scene;
     float toward_sun[3];
-    to_plant(tree, picture->view->sun_direction, 1, toward_sun);
+    march_to_plant(tree, picture->view->sun_direction, 1, toward_sun);
     struct march_form (*form)(const float[3], const float[3]) =
         picture->options.model == MARCH_ISOTROPIC ? form_isotropic : form_of;
     job->hidden = form(toward_eye, toward_eye);
@@ -196,10 +120,11 @@ static void light_fill(const struct march_view *picture, const struct march_tree
     }
 }
 
-static void fog_fill(const struct march_view *picture, const struct box *box, struct march_job *job)
+static void fog_fill(const struct march_view *picture, const struct march_box *box,
+                     struct march_job *job)
 {
     float density = picture->effects & EFFECT_FOG ? picture->scene->fog.density_per_m : 0;
-    job->clear = density > 0 ? expf(-density * sqrtf(dot3(box->middle_m, box->middle_m))) : 1;
+    job->clear = march_box_clear(box, density);
     for (int c = 0; c < 3; c++)
         job->fog[c] = (1 - job->clear) * picture->scene->fog.color[c];
 }
@@ -211,7 +136,7 @@ void march_job_aim(const struct march_view *picture, const struct march_tree *tr
     float world[3];
     for (int i = 0; i < 3; i++)
         world[i] = rays->first[i] + x_px * rays->right[i] + y_px * rays->down[i];
-    to_plant(tree, world, 1 / (tree->scale * voxel_m), job->first);
+    march_to_plant(tree, world, 1 / (tree->scale * voxel_m), job->first);
 }
 
 void march_job_fill(const struct march_view *picture, const struct march_tree *tree, uint32_t level,
@@ -219,19 +144,16 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
 {
     const struct voxels *voxels = picture->species[tree->species].voxels;
     const struct voxels_level *grid = &voxels->levels[level];
-    float per_m = 1 / (tree->scale * grid->voxel_m), offset[3], toward_eye[3];
-    struct box box = box_of(picture, tree, voxels, level);
+    const float per_m = 1 / (tree->scale * grid->voxel_m);
+    float toward_eye[3];
+    struct march_box box = march_box_of(picture->view, tree, voxels, level);
     job->cells = grid->cells;
     job->voxels = (const uint32_t *)(const void *)voxels->voxels;
-    for (int i = 0; i < 3; i++) {
-        job->size[i] = (int32_t)grid->size[i];
-        offset[i] = picture->view->eye_m[i] - tree->position_m[i];
-    }
-    to_plant(tree, offset, per_m, job->eye);
     for (int i = 0; i < 3; i++)
-        job->eye[i] -= voxels->origin_m[i] / grid->voxel_m;
-    to_plant(tree, picture->rays.right, per_m, job->right);
-    to_plant(tree, picture->rays.down, per_m, job->down);
+        job->size[i] = (int32_t)grid->size[i];
+    march_eye_of(picture->view, tree, voxels, level, per_m, job->eye);
+    march_to_plant(tree, picture->rays.right, per_m, job->right);
+    march_to_plant(tree, picture->rays.down, per_m, job->down);
     march_job_aim(picture, tree, x_px, y_px, grid->voxel_m, job);
     job->speed = sqrtf(dot3(job->first, job->first));
     for (int i = 0; i < 3; i++)
@@ -257,7 +179,7 @@ void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t
     struct march_view away = *picture;
     struct march_tree tree = {
         .cosine = cosf(angle), .sine = sinf(angle), .scale = 1, .species = species};
-    struct box box = box_of(picture, &tree, voxels, 0);
+    struct march_box box = march_box_of(view, &tree, voxels, 0);
     float ray[3], sides_m[2];
     for (int i = 0; i < 3; i++)
         ray[i] =
@@ -266,7 +188,7 @@ void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t
         tree.position_m[i] = depth_m * ray[i] - box.middle_m[i];
     for (int k = 0; k < 2; k++) {
         const float *axis = k ? view->up : view->right;
-        sides_m[k] = 2 * spread_of(&box, axis, view->forward, dot3(ray, axis)) / FAR_SIDE;
+        sides_m[k] = 2 * march_box_spread(&box, axis, view->forward, dot3(ray, axis)) / FAR_SIDE;
     }
     for (int i = 0; i < 3; i++) {
         away.rays.right[i] = sides_m[0] / depth_m * view->right[i];

@@ -5,13 +5,7 @@
 #include "bake/backdrop_cpu.h"
 #include "bake/march.h"
 #include "bake/march_parts.h"
-
-struct march_tree {
-    float position_m[3], cosine, sine, scale;
-    uint32_t species;
-    uint32_t turn; /* rotation, in MARCH_TURNS steps */
-};
-enum { MARCH_TURNS = 32 };
+#include "bake/march_tree.h"
 
 /* A species as the march has it. */
 struct march_species {
