@@ -106,9 +106,13 @@ def check_trade(browser, rows):
     check("the scene switch changes the scene and its trees", compare("walk-in", 30, "full_rmse", fps=True))
     views = sum(1 for r in group(rows, "walk-in", 30)) * 3
     check("error against distance has a point a view", len(dots(browser, "live-distance")) == views)
+    check("a camera that walks in shows no error against elevation", not dots(browser, "live-elevation"))
     for name, value in (("scene", "0"), ("speed", "0"), ("against", "0"), ("error", "0")):
         pick(name, value)
     pick("trees", browser.run("String(data.groups.findIndex((group) => group.trees === 1000))"))
+    views = sum(1 for r in group(rows, "poplar-forest", 1000)) * 3
+    check("error against elevation has a point a view", len(dots(browser, "live-elevation")) == views)
+    check("and neither distance nor azimuth, which it keeps, a chart", not dots(browser, "live-distance") and not dots(browser, "live-azimuth"))
 
     before = len(dots(browser, "live-growth"))
     browser.click("#live-trade .chip")

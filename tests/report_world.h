@@ -108,6 +108,8 @@ static void world_view(struct arena *arena, const char *folder, struct result *r
     size_t trees = result->cell.trees;
     *out = (struct result_view){.time = view / 2.0,
                                 .distance_m = walks ? 200.0 / (1 << 2 * view) : 120,
+                                .elevation_deg = walks ? 3 : 90 - 40.0 * view,
+                                .azimuth_deg = 200,
                                 .same_key =
                                     world_key(result->cell.scene, trees, view, method->effects),
                                 .full_key = world_key(result->cell.scene, trees, view, EFFECTS_ALL),

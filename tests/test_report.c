@@ -244,6 +244,67 @@ static void test_report__a_tree_count_has_its_own_front_and_null_none(void **sta
     }
 }
 
+/* Of one cell: the angles and errors that the plot's data has, in its order. */
+static size_t plotted(const char *path, const char *label, double (*points)[2], size_t most)
+{
+    FILE *file = fopen(path, "r");
+    char line[512] = "";
+    size_t count = 0;
+    while (file && !strstr(line, label) && fgets(line, sizeof line, file))
+        ;
+    while (file && count < most && fgets(line, sizeof line, file) &&
+           sscanf(line, "%lf %lf", &points[count][0], &points[count][1]) == 2)
+        count++;
+    if (file)
+        fclose(file);
+    return count;
+}
+
+/* Walking in, the distance; going up at one distance, the elevation, in its order; nothing against
+ * the azimuth, which never changes. */
+static void test_report__errors_stand_against_what_the_camera_changes(void **state)
+{
+    struct world *world = *state;
+    const char *walk = "walk-in-30", *forest = "poplar-forest-1000", *out = world->out;
+    static const char *const kinds[] = {"distance", "elevation", "azimuth"};
+    for (size_t k = 0; k < 3; k++)
+        for (int walks = 0; walks < 2; walks++) {
+            const char *path = arena_printf(world->arena, "%s/plots/%s-%s.svg", out, kinds[k],
+                                            walks ? walk : forest);
+            if (file_exists(path) != (k == (walks ? 0 : 1)))
+                fail_msg("%s", path);
+        }
+    const char *data = arena_printf(world->arena, "%s/plots/elevation-%s.dat", out, forest);
+    const struct book *book = book_make(world->arena, world->run);
+    size_t cells = 0;
+    for (size_t i = 0; i < book->rows_count; i++) {
+        const struct row *row = &book->rows[i];
+        if (row->trees != 1000 || !row->ok || row->is_floor)
+            continue;
+        double points[WORLD_VIEWS + 1][2];
+        assert_int_equal(plotted(data, row->label, points, WORLD_VIEWS + 1), WORLD_VIEWS);
+        for (size_t v = 0; v < WORLD_VIEWS; v++) {
+            const struct result_view *view = &row->seen->views[WORLD_VIEWS - 1 - v];
+            assert_true(fabs(points[v][0] - view->elevation_deg) < 1e-6);
+            assert_true(fabs(points[v][1] - view->same.value.flip) < 1e-6);
+        }
+        cells++;
+    }
+    assert_int_equal(cells, WORLD_METHODS - 2); /* less null and the one that fails */
+    assert_true(has(content(world, "index.html"), "<h2 id=\"angle\">"));
+    struct run still = first_group(world);
+    const char *folder = arena_printf(world->arena, "%s/still", world->folder);
+    struct result *results = ARENA_ARRAY(world->arena, struct result, still.results_count);
+    for (size_t i = 0; i < still.results_count; i++) {
+        results[i] = still.results[i];
+        results[i].views_count = results[i].views_count ? 2 : 0; /* two views are no curve */
+    }
+    still.results = results;
+    assert_int_equal(report_write_run(world->arena, &still, folder, &world->error), STATUS_OK);
+    const char *page = arena_printf(world->arena, "../still/%s", "index.html");
+    assert_false(has(content(world, page), "<h2 id=\"angle\">"));
+}
+
 static void test_report__labels_tell_cells_apart_and_say_no_more(void **state)
 {
     struct world *world = *state;
@@ -473,6 +534,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(test_report__failures_are_told_with_message_and_replay_command),
         cmocka_unit_test(test_report__the_headline_reads_the_front_out),
         cmocka_unit_test(test_report__a_tree_count_has_its_own_front_and_null_none),
+        cmocka_unit_test(test_report__errors_stand_against_what_the_camera_changes),
         cmocka_unit_test(test_report__labels_tell_cells_apart_and_say_no_more),
         cmocka_unit_test(test_report__a_missing_picture_is_said_and_costs_nothing_else),
         cmocka_unit_test(test_report__without_gnuplot_tables_and_page_are_still_written),

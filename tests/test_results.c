@@ -47,6 +47,8 @@ static void any_view(struct random *random, struct result_view *view)
 {
     view->time = random_double(random);
     view->distance_m = any_double(random);
+    view->elevation_deg = any_double(random);
+    view->azimuth_deg = any_double(random);
     view->picture_hash = ((uint64_t)random_u32(random) << 32) | random_u32(random);
     view->picture = random_below(random, 2) ? "pictures/a b-v0.frame" : NULL;
     view->same_key = UINT64_MAX - random_u32(random);
@@ -129,6 +131,8 @@ static void same_view(const struct result_view *a, const struct result_view *b)
 {
     same_double(a->time, b->time, "time");
     same_double(a->distance_m, b->distance_m, "distance_m");
+    same_double(a->elevation_deg, b->elevation_deg, "elevation_deg");
+    same_double(a->azimuth_deg, b->azimuth_deg, "azimuth_deg");
     assert_true(a->picture_hash == b->picture_hash && a->same_key == b->same_key);
     assert_true(a->full_key == b->full_key && a->compared == b->compared);
     same_text(a->picture, b->picture);
@@ -304,8 +308,8 @@ static void test_run__what_is_no_run_is_refused_and_left_as_it_is(void **state)
     static const char *const texts[] = {
         "a thesis without an end",
         "two lines\nof a thesis",
-        "{\"version\":4,\"kind\":\"treeline-run\"",
-        "{\"version\":4,\"kind\":\"treeline-run\"}\n{\"version\":4,\"cell\":\"cut",
+        "{\"version\":5,\"kind\":\"treeline-run\"",
+        "{\"version\":5,\"kind\":\"treeline-run\"}\n{\"version\":5,\"cell\":\"cut",
     };
     struct arena *arena = arena_create(0);
     struct error error = {0};
@@ -355,9 +359,9 @@ static void test_run__a_malformed_line_is_named_by_its_number(void **state)
     bad_file(arena_printf(arena, "%s\n%s\n\n%s\n", first, good, good), "cells.jsonl:3", "JSON");
     bad_file(arena_printf(arena, "%s\n{\"version\":1}\n%s\n", first, good), "cells.jsonl:2",
              "cell: is missing");
-    bad_file(arena_printf(arena, "%s\n{\"version\":4}\n", first), "cells.jsonl:2",
-             "version 1 to 3");
-    bad_file("{\"version\":4,\"kind\":\"treeline-run\"}\n", "cells.jsonl:1", "version 1 to 3");
+    bad_file(arena_printf(arena, "%s\n{\"version\":5}\n", first), "cells.jsonl:2",
+             "version 1 to 4");
+    bad_file("{\"version\":5,\"kind\":\"treeline-run\"}\n", "cells.jsonl:1", "version 1 to 4");
     bad_file("{\"version\":1}\n", "cells.jsonl:1", "treeline-run");
     bad_file("", "no whole line", "provenance");
     char *unknown = arena_printf(arena, "{\"more\":1,%s", good + 1);

@@ -217,6 +217,8 @@ static const struct {
      "camera.keys: has 1 elements; allowed for this kind: 2..2"},
     {"{" PLANTS "," GRID ",\"camera\":{\"kind\":\"still\",\"turn_deg\":90," KEYS "}}",
      "camera.turn_deg: means nothing to this kind; allowed: with orbit"},
+    {"{" PLANTS "," GRID ",\"camera\":{\"kind\":\"still\",\"rise_deg\":90," KEYS "}}",
+     "camera.rise_deg: means nothing to this kind; allowed: with orbit"},
     {"{" PLANTS "," GRID ",\"camera\":{\"kind\":\"still\",\"extent_min_m\":9," KEYS "}}",
      "camera.extent_min_m: means nothing to metres"},
     {"{" PLANTS "," GRID ",\"camera\":{\"kind\":\"still\",\"fov_y_deg\":180," KEYS "}}",

@@ -239,6 +239,59 @@ static void test_path__an_orbit_keeps_its_distance_and_closes(void **state)
     assert_float_equal(view.eye_m[2], -1 - 2, 1e-4);
 }
 
+/* On the sphere about the target, as far up as the angle says; the azimuth is kept. */
+static void test_path__an_orbit_rises_to_straight_above_and_no_farther(void **state)
+{
+    (void)state;
+    key_set(0, 7, 2, 9, 1, 2, 1); /* 10 m away, level */
+    struct scene scene = scene_with(PATH_ORBIT, 1);
+    scene.camera.turn_rad = 0;
+    scene.camera.rise_rad = GLM_PIf / 2;
+    const double azimuth_deg = atan2(6, 8) * 180 / M_PI;
+    for (int k = 0; k <= 18; k++) {
+        struct view view;
+        double elevation_deg, around_deg;
+        view_at(&scene, k / 18.0, &view);
+        view_angles_deg(&view, &elevation_deg, &around_deg);
+        assert_float_equal(distance(view.eye_m, keys[0].target_m), 10, 1e-4);
+        assert_float_equal(view.eye_m[1], 2 + 10 * sin(k * M_PI / 36), 1e-4);
+        assert_float_equal(elevation_deg, 5 * k, 1e-3);
+        if (k < 18)
+            assert_float_equal(around_deg, azimuth_deg, 1e-3);
+    }
+    struct view above, beyond;
+    view_at(&scene, 1, &above);
+    scene.camera.rise_rad = GLM_PIf;
+    view_at(&scene, 1, &beyond);
+    assert_float_equal(distance(above.eye_m, beyond.eye_m), 0, 1e-4);
+    assert_float_equal(path_time(&scene, 3, 4), 1, 0);
+}
+
+/* Turning, the azimuth is the angle turned by; looking up, the eye is below; straight down the
+ * azimuth is known by the picture's top. */
+static void test_view__angles_are_those_of_the_eye_around_its_target(void **state)
+{
+    (void)state;
+    key_set(0, 0, 5, 12, 0, 0, 0);
+    struct scene scene = scene_with(PATH_ORBIT, 1);
+    double elevation_deg, azimuth_deg;
+    struct view view;
+    for (int k = 0; k < 12; k++) {
+        view_at(&scene, k / 12.0, &view);
+        view_angles_deg(&view, &elevation_deg, &azimuth_deg);
+        assert_float_equal(elevation_deg, atan2(5, 12) * 180 / M_PI, 1e-3);
+        assert_float_equal(fmod(azimuth_deg + 1, 360), 30 * k + 1, 1e-3);
+    }
+    view_look_at(&scene, (float[3]){0, 1, 3}, (float[3]){0, 4, 0}, &view);
+    view_angles_deg(&view, &elevation_deg, &azimuth_deg);
+    assert_float_equal(elevation_deg, -45, 1e-3);
+    assert_float_equal(fmod(azimuth_deg + 1, 360), 1, 1e-3);
+    view_look_at(&scene, (float[3]){0, 9, 0}, (float[3]){0, 4, 0}, &view);
+    view_angles_deg(&view, &elevation_deg, &azimuth_deg);
+    assert_float_equal(elevation_deg, 90, 1e-3);
+    assert_float_equal(fmod(azimuth_deg + 1, 360), 1, 1e-3); /* its top is -z: the limit from +z */
+}
+
 static void test_path__an_approach_shrinks_the_distance_in_equal_ratios(void **state)
 {
     (void)state;
@@ -448,6 +501,8 @@ int main(void)
         cmocka_unit_test(test_view__times_outside_and_nan_are_clamped),
         cmocka_unit_test(test_sun__direction_moves_from_start_to_end),
         cmocka_unit_test(test_path__an_orbit_keeps_its_distance_and_closes),
+        cmocka_unit_test(test_path__an_orbit_rises_to_straight_above_and_no_farther),
+        cmocka_unit_test(test_view__angles_are_those_of_the_eye_around_its_target),
         cmocka_unit_test(test_path__an_approach_shrinks_the_distance_in_equal_ratios),
         cmocka_unit_test(test_path__keys_are_passed_and_a_straight_line_stays_straight),
         cmocka_unit_test(test_path__frames_of_a_closed_orbit_do_not_repeat_the_first),

@@ -205,6 +205,7 @@ static enum status view_picture(struct stage *stage, size_t index, size_t count,
         return error_context(stage->error, "picture %zu", index);
     result->picture_hash = frame_hash(frame);
     result->distance_m = trees_distance_m(stage->scene, &view);
+    view_angles_deg(&view, &result->elevation_deg, &result->azimuth_deg);
     if (stage->folder) {
         result->picture = picture_name(stage->result_arena, stage->cell, index);
         const char *path =
@@ -283,6 +284,7 @@ static enum status picture_again(struct stage *stage, const struct frame *before
     result->views = ARENA_NEW(stage->result_arena, struct result_view);
     result->views[0].time = time;
     result->views[0].distance_m = NAN;
+    view_angles_deg(&view, &result->views[0].elevation_deg, &result->views[0].azimuth_deg);
     result->views[0].picture_hash = frame_hash(frame);
     if (result->views[0].picture_hash != frame_hash(before))
         result->message = "the picture differs from repetition 0's";

@@ -1,4 +1,4 @@
-/* Logarithmic axes: ranges and 1-2-5 ticks. */
+/* Logarithmic axes: ranges and 1-2-5 ticks. Axes of degrees: parts of a right angle. */
 #include "report/axis.h"
 
 #include <math.h>
@@ -6,7 +6,12 @@
 
 struct axis axis_empty(void)
 {
-    return (struct axis){INFINITY, 0};
+    return (struct axis){.low = INFINITY};
+}
+
+struct axis axis_degrees(double low, double high)
+{
+    return (struct axis){.low = low, .high = high, .is_degrees = true};
 }
 
 void axis_add(struct axis *axis, double value)
@@ -20,7 +25,7 @@ void axis_add(struct axis *axis, double value)
 void axis_widen(struct axis *axis, double part_below, double part_above)
 {
     if (axis->low > axis->high)
-        *axis = (struct axis){0.1, 1};
+        *axis = (struct axis){.low = 0.1, .high = 1};
     double middle = 0.5 * (log10(axis->low) + log10(axis->high));
     double half = fmax(0.5 * (log10(axis->high) - log10(axis->low)), 0.25);
     axis->low = pow(10, middle - half - part_below * 2 * half);
@@ -58,8 +63,23 @@ static int put_ticks(const struct axis *axis, size_t list, FILE *out)
     return count;
 }
 
+static void put_degrees(const struct axis *axis, const char *which, FILE *out)
+{
+    static const double steps[] = {1, 2, 5, 10, 15, 30, 45, 90};
+    size_t last = sizeof steps / sizeof *steps - 1, i = 0;
+    while (i < last && axis->high - axis->low > 9 * steps[i])
+        i++;
+    double margin = 0.02 * (axis->high - axis->low);
+    fprintf(out, "set %srange [%.9g:%.9g]\nset %stics %g\n", which, axis->low - margin,
+            axis->high + margin, which, steps[i]);
+}
+
 void axis_put(const struct axis *axis, const char *which, FILE *out)
 {
+    if (axis->is_degrees) {
+        put_degrees(axis, which, out);
+        return;
+    }
     size_t lists = sizeof mantissas / sizeof *mantissas, list = 0;
     while (list + 1 < lists && put_ticks(axis, list, NULL) < 4)
         list++;

@@ -131,6 +131,12 @@ void book_find_laws(struct book *book); /* by book_make */
 bool book_knows(const struct book *book, enum column_index column);
 /* The group with the most trees of its family: what overviews show. */
 bool book_is_overview(const struct book *book, size_t group);
+/* What the camera changes along a path. */
+enum view_axis { VIEW_DISTANCE, VIEW_ELEVATION, VIEW_AZIMUTH };
+enum { VIEW_AXES = VIEW_AZIMUTH + 1 };
+/* A group's views tell how the error depends on it: the distance changes by more than a tenth; or
+ * it does not, and an angle changes by 10 degrees or more over three views or more. */
+bool views_go(const struct book *book, const struct group *group, enum view_axis axis);
 /* Rows of a group on the front, fastest first; front holds group->rows_count places. */
 size_t book_front(const struct book *book, const struct group *group, size_t *front);
 
@@ -192,6 +198,8 @@ enum figure_kind {
     FIGURE_TRADE_FULL,
     FIGURE_GROWTH,
     FIGURE_DISTANCE,
+    FIGURE_ELEVATION,
+    FIGURE_AZIMUTH,
     FIGURE_ROOFLINE,
     FIGURE_PAPER,
     FIGURE_SWEEP,

@@ -154,7 +154,8 @@ static double error_of(const struct metrics *values, size_t m)
     return metric_of(values, &metric_table[metrics[m].same - COLUMN_same_rmse]);
 }
 
-/* A row's compared views: time, distance, the errors of either reference. */
+/* A row's compared views: time, distance, angles, the errors of either reference, the noise of the
+ * one with the same effects. */
 static void put_views(struct json_out *out, const struct row *row)
 {
     json_open(out, NULL, '[');
@@ -163,10 +164,14 @@ static void put_views(struct json_out *out, const struct row *row)
         json_open(out, NULL, '[');
         put_number(out, NULL, view->time);
         put_number(out, NULL, view->distance_m);
+        put_number(out, NULL, view->elevation_deg);
+        put_number(out, NULL, view->azimuth_deg);
         for (size_t m = 0; m < METRICS_COUNT && view->compared; m++)
             put_number(out, NULL, error_of(&view->same.value, m));
         for (size_t m = 0; m < METRICS_COUNT && view->compared; m++)
             put_number(out, NULL, error_of(&view->full.value, m));
+        for (size_t m = 0; m < METRICS_COUNT && view->compared; m++)
+            put_number(out, NULL, error_of(&view->same.floor, m));
         json_close(out);
     }
     json_close(out);

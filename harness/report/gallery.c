@@ -215,10 +215,12 @@ static void put_view(struct gallery *gallery, const struct group *group, size_t 
             continue;
         const struct result_view *at = &row->seen->views[view];
         if (!headed)
-            fprintf(out,
-                    "<h4>view %zu <span class=\"soft\">at %s of the path, %s m to the trees"
-                    "</span></h4>\n<div class=\"cards\">\n",
-                    view + 1, number_plain(at->time, 3).text, number_plain(at->distance_m, 3).text);
+            fprintf(
+                out,
+                "<h4>view %zu <span class=\"soft\">at %s of the path, %s m to the trees, the eye "
+                "%s\u00b0 up, at azimuth %s\u00b0</span></h4>\n<div class=\"cards\">\n",
+                view + 1, number_plain(at->time, 3).text, number_plain(at->distance_m, 3).text,
+                number_plain(at->elevation_deg, 2).text, number_plain(at->azimuth_deg, 3).text);
         headed = true;
         const char *name =
             arena_printf(arena, "%s-view%zu-reference%zu", group->slug, view + 1, shown.count + 1);

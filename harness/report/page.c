@@ -96,6 +96,17 @@ static bool page_has(const struct page *page, enum figure_kind kind)
     return false;
 }
 
+/* Some scene shows how the error depends on the angle of view. */
+static bool page_turns(const struct page *page)
+{
+    const struct book *book = page->book;
+    for (size_t g = 0; g < book->groups_count; g++)
+        if (views_go(book, &book->groups[g], VIEW_ELEVATION) ||
+            views_go(book, &book->groups[g], VIEW_AZIMUTH))
+            return true;
+    return false;
+}
+
 static void put_facts(const struct page *page)
 {
     const struct book *book = page->book;
@@ -118,6 +129,7 @@ static void put_facts(const struct page *page)
     put_fact(page, "started", plain_date(page->arena, from->started));
     page_text(page, "</dl>\n<nav aria-label=\"sections\"><a href=\"#trade\">error and time</a>"
                     "<a href=\"#growth\">more trees</a><a href=\"#distance\">distance</a>");
+    page_text(page, page_turns(page) ? "<a href=\"#angle\">view angle</a>" : "");
     page_text(page, page_has(page, FIGURE_SWEEP) ? "<a href=\"#options\">options</a>" : "");
     page_text(page, "<a href=\"#cost\">memory and build</a>");
     page_text(page, book->run->calibrations_count ? "<a href=\"#limit\">limits</a>" : "");
@@ -161,6 +173,9 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
         [FIGURE_GROWTH] = ("Bars: 95 % intervals. Lines: a power law fitted to three or more tree "
                            "counts; N^(\u22121) means that twice the trees take twice the time."),
         [FIGURE_DISTANCE] = "One point a view; error of the representation.",
+        [FIGURE_ELEVATION] = "0: from the side, 90: from straight above. One point a view; error "
+                             "of the representation.",
+        [FIGURE_AZIMUTH] = "One point a view; error of the representation.",
         [FIGURE_ROOFLINE] = ("The nearer the line, the nearer the limit. Bars: 95 % intervals. A "
                              "point above it mixes large and small triangles."),
         [FIGURE_PAPER] = "On the line: the same ratio as printed. Bars: 95 % intervals.",
@@ -219,6 +234,19 @@ static void put_growth_and_distance(const struct page *page)
             "<p class=\"soft still\">No plot: in every scene of this run the camera keeps its "
             "distance to the trees; a scene that walks or flies in shows how errors grow "
             "near by.</p>\n");
+}
+
+static void put_angles(const struct page *page)
+{
+    if (!page_turns(page))
+        return;
+    page_text(
+        page,
+        "<h2 id=\"angle\">Error against view angle</h2>\n<p>Of scenes whose camera goes up and "
+        "around at one distance. A method with fixed directions of view errs most between "
+        "them.</p>\n<div class=\"live\"><div id=\"live-elevation\"></div>"
+        "<div id=\"live-azimuth\"></div></div>\n");
+    page_figures(page, FIGURE_ELEVATION, FIGURE_AZIMUTH);
 }
 
 static void put_options(const struct page *page)
@@ -288,6 +316,7 @@ static void put_page(const struct page *page)
     page_live(page, "live-controls");
     put_trade(page);
     put_growth_and_distance(page);
+    put_angles(page);
     put_options(page);
     page_cost(page);
     page_limit(page);

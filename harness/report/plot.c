@@ -45,7 +45,8 @@ void plot_axes(struct plot *plot, const struct axis *x, const struct axis *y, co
     fputs("# ", gp);
     plot_text(gp, plot->title);
     fprintf(gp, ". Draws it again: gnuplot %s.gp\n", plot->name);
-    fputs("set encoding utf8\nset logscale xy\nset border 3 linecolor rgb \"#5d6875\"\n", gp);
+    fprintf(gp, "set encoding utf8\nset logscale %s\nset border 3 linecolor rgb \"#5d6875\"\n",
+            x->is_degrees ? "y" : "xy");
     axis_put(x, "x", gp);
     axis_put(y, "y", gp);
     fprintf(gp, "set tics nomirror scale 0.6 textcolor rgb \"#%06x\"\n", tint_rgb(TINT_MUTED));

@@ -27,7 +27,7 @@ struct plot {
 
 void plot_open(struct plot *plot, const struct book *book, const char *folder, const char *name,
                const char *title);
-/* Both axes logarithmic, with labels. */
+/* Both axes, with labels. y is logarithmic. */
 void plot_axes(struct plot *plot, const struct axis *x, const struct axis *y, const char *x_label,
                const char *y_label);
 /* A text for people in the script, quoted for gnuplot. */
@@ -53,9 +53,11 @@ enum status plot_trade(const struct book *book, const struct group *group, bool 
 /* Frame rate against trees of a family. */
 enum status plot_growth(const struct book *book, size_t family, const char *folder,
                         struct figure *figure, struct error *error);
-/* Error against distance over a group's views. */
-enum status plot_distance(const struct book *book, const struct group *group, const char *folder,
-                          struct figure *figure, struct error *error);
+/* Error against what the camera changes, over a group's views. */
+enum status plot_views(const struct book *book, const struct group *group, enum view_axis axis,
+                       const char *folder, struct figure *figure, struct error *error);
+/* How many series of the same method come before this one: tells them apart by dashes. */
+int plot_variant(const struct book *book, size_t series);
 /* Triangles a second against their size, and the machine's roof, of a group. */
 enum status plot_roofline(const struct book *book, const struct group *group, const char *folder,
                           struct figure *figure, struct error *error);

@@ -1,14 +1,12 @@
-/* The static plots of frame rate against trees and of error against distance. */
+/* The static plot of frame rate against trees. */
 #include "report/plot.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* More lines than this no static plot tells apart. */
 enum { LINES_MAX = 24 };
 
-/* How many series of the same method come before this one: tells them apart by dashes. */
-static int variant_of(const struct book *book, size_t series)
+int plot_variant(const struct book *book, size_t series)
 {
     size_t *method_of = ARENA_ARRAY(book->arena, size_t, book->series_count);
     for (size_t i = 0; i < book->rows_count; i++)
@@ -90,73 +88,6 @@ enum status plot_growth(const struct book *book, size_t family, const char *fold
     fputs("set key maxcols 1\n", plot.gp);
     for (size_t i = 0; i < book->laws_count; i++)
         if (book->laws[i].points->family == family)
-            growth_series(&plot, &book->laws[i], variant_of(book, book->laws[i].points->series));
-    return plot_close(&plot, figure, error);
-}
-
-static int compare_views(const void *a, const void *b)
-{
-    const struct result_view *x = *(const struct result_view *const *)a;
-    const struct result_view *y = *(const struct result_view *const *)b;
-    return (x->distance_m > y->distance_m) - (x->distance_m < y->distance_m);
-}
-
-static void distance_curve(struct plot *plot, const struct row *row, double lowest)
-{
-    const struct book *book = plot->book;
-    const struct result *seen = row->seen;
-    const struct result_view **views =
-        ARENA_ARRAY(book->arena, const struct result_view *, seen->views_count);
-    size_t count = 0;
-    for (size_t i = 0; i < seen->views_count; i++)
-        if (seen->views[i].compared && seen->views[i].distance_m > 0)
-            views[count++] = &seen->views[i];
-    if (count == 0)
-        return;
-    qsort(views, count, sizeof *views, compare_views);
-    int block = plot_block(plot, row->label);
-    for (size_t i = 0; i < count; i++)
-        fprintf(plot->dat, "%.9g %.9g\n", views[i]->distance_m,
-                fmax(views[i]->same.value.flip, lowest));
-    int variant = variant_of(book, row->series);
-    plot_curve(plot);
-    fprintf(
-        plot->gp,
-        "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
-        "%d linecolor rgb \"#%06x\" title ",
-        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
-        tint_rgb(tint_method(book, row->method_index)));
-    plot_text(plot->gp, row->label);
-    plot->key_rows++;
-}
-
-enum status plot_distance(const struct book *book, const struct group *group, const char *folder,
-                          struct figure *figure, struct error *error)
-{
-    struct axis x = axis_empty(), y = axis_empty();
-    for (size_t i = 0; i < group->rows_count; i++) {
-        const struct row *row = &book->rows[group->rows[i]];
-        for (size_t k = 0; k < row->seen->views_count && row->compared && !row->is_floor; k++)
-            if (row->seen->views[k].compared) {
-                axis_add(&x, row->seen->views[k].distance_m);
-                axis_add(&y, row->seen->views[k].same.value.flip);
-            }
-    }
-    if (!(x.high > 1.1 * x.low) || group->rows_count > LINES_MAX)
-        return STATUS_OK;
-    axis_widen(&x, 0.05, 0.05);
-    axis_widen(&y, 0.08, 0.08);
-    struct plot plot;
-    figure->kind = FIGURE_DISTANCE;
-    plot_open(&plot, book, folder, arena_printf(book->arena, "distance-%s", group->slug),
-              group->title);
-    plot_axes(&plot, &x, &y, "median distance to the trees in view [m]",
-              "FLIP, reference with same effects");
-    fputs("set key maxcols 1\n", plot.gp);
-    for (size_t i = 0; i < group->rows_count; i++) {
-        const struct row *row = &book->rows[group->rows[i]];
-        if (row->compared && !row->is_floor)
-            distance_curve(&plot, row, y.low);
-    }
+            growth_series(&plot, &book->laws[i], plot_variant(book, book->laws[i].points->series));
     return plot_close(&plot, figure, error);
 }

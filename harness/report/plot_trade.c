@@ -9,7 +9,7 @@
 /* Smallest and largest error over a row's views. */
 static struct axis view_range(const struct row *row, bool full)
 {
-    struct axis range = {INFINITY, -INFINITY};
+    struct axis range = {.low = INFINITY, .high = -INFINITY};
     for (size_t i = 0; i < row->seen->views_count; i++) {
         const struct result_view *view = &row->seen->views[i];
         double value = full ? view->full.value.flip : view->same.value.flip;

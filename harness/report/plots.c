@@ -5,7 +5,7 @@
 #include "report/paper.h"
 #include "report/sweep.h"
 
-enum { FAMILIES_MAX = 6, KINDS_COUNT = 5, SWEEPS_MAX = 6, SWEEP_AXES = SWEEP_MEMORY + 1 };
+enum { FAMILIES_MAX = 6, KINDS_COUNT = 7, SWEEPS_MAX = 6, SWEEP_AXES = SWEEP_MEMORY + 1 };
 
 /* Keeps the figure if something was drawn. */
 static void keep(struct figures *figures)
@@ -25,9 +25,11 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
     if (status == STATUS_OK)
         status = plot_growth(book, group->family, folder, &figures->list[figures->count], error);
     keep(figures);
-    if (status == STATUS_OK)
-        status = plot_distance(book, group, folder, &figures->list[figures->count], error);
-    keep(figures);
+    for (int axis = 0; axis < VIEW_AXES && status == STATUS_OK; axis++) {
+        status = plot_views(book, group, (enum view_axis)axis, folder,
+                            &figures->list[figures->count], error);
+        keep(figures);
+    }
     if (status == STATUS_OK)
         status = plot_roofline(book, group, folder, &figures->list[figures->count], error);
     keep(figures);

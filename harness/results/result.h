@@ -10,8 +10,9 @@
 #include "truth/metrics.h"
 
 /* Version 2 added the calibration; a run of version 1 is read as one that has none. Version 3 added
- * the method's own counts, calibrations of several rounds, and the references' cost. */
-#define RESULT_VERSION 3
+ * the method's own counts, calibrations of several rounds, and the references' cost. Version 4
+ * added the angles of views. */
+#define RESULT_VERSION 4
 #define RESULT_VERSION_OLDEST 1
 
 /* Scalar columns, one table for JSON keys, report columns and docs. X(field, unit, better, doc).
@@ -44,8 +45,9 @@
 
 /* One compared picture. */
 struct result_view {
-    double time;       /* along the path */
-    double distance_m; /* median distance of the eye to the trees in the frustum */
+    double time;                       /* along the path */
+    double distance_m;                 /* median distance of the eye to the trees in the frustum */
+    double elevation_deg, azimuth_deg; /* of the eye, view_angles_deg() */
     uint64_t picture_hash;
     const char *picture;         /* path of the frame file under the run folder */
     uint64_t same_key, full_key; /* reference_key of either reference */

@@ -54,6 +54,8 @@ static void view_put(struct json_out *out, const struct result_view *view)
     json_open(out, NULL, '{');
     json_put_number(out, "time", view->time);
     json_put_number(out, "distance_m", view->distance_m);
+    json_put_number(out, "elevation_deg", view->elevation_deg);
+    json_put_number(out, "azimuth_deg", view->azimuth_deg);
     json_put_u64(out, "picture_hash", view->picture_hash);
     json_put_text(out, "picture", view->picture);
     json_put_u64(out, "same_key", view->same_key);
@@ -159,6 +161,8 @@ static void view_get(struct json *object, struct result_view *view)
 {
     view->time = number_or_nan(object, "time", -DBL_MAX);
     view->distance_m = number_or_nan(object, "distance_m", -DBL_MAX);
+    view->elevation_deg = number_or_nan(object, "elevation_deg", -DBL_MAX);
+    view->azimuth_deg = number_or_nan(object, "azimuth_deg", -DBL_MAX);
     view->picture_hash = json_u64(object, "picture_hash");
     view->picture = json_text(object, "picture", NULL);
     view->same_key = json_u64(object, "same_key");

@@ -19,14 +19,29 @@ static double distance3(const float a[3], const float b[3])
     return sqrt(sum);
 }
 
+/* Raises a point about the origin; from straight above or below it comes down toward +z. */
+static void raise3(double by_rad, double point[3])
+{
+    double level = hypot(point[0], point[2]), radius = hypot(level, point[1]);
+    double elevation = atan2(point[1], level) + by_rad;
+    elevation = fmin(fmax(elevation, -TWO_PI / 4), TWO_PI / 4);
+    double x = level > 0 ? point[0] / level : 0, z = level > 0 ? point[2] / level : 1;
+    point[0] = x * radius * cos(elevation);
+    point[1] = radius * sin(elevation);
+    point[2] = z * radius * cos(elevation);
+}
+
 static void orbit_at(const struct camera_path *path, double time, float eye_m[3])
 {
     const float *eye = path->keys[0].eye_m, *target = path->keys[0].target_m;
-    double angle = time * path->turn_rad, c = cos(angle), s = sin(angle);
-    double x = (double)eye[0] - target[0], z = (double)eye[2] - target[2];
-    eye_m[0] = (float)(target[0] + x * c + z * s);
-    eye_m[1] = eye[1];
-    eye_m[2] = (float)(target[2] - x * s + z * c);
+    double angle = time * path->turn_rad, c = cos(angle), s = sin(angle), from[3];
+    for (int i = 0; i < 3; i++)
+        from[i] = (double)eye[i] - target[i];
+    if (path->rise_rad != 0)
+        raise3(time * path->rise_rad, from);
+    eye_m[0] = (float)(target[0] + from[0] * c + from[2] * s);
+    eye_m[1] = (float)(target[1] + from[1]);
+    eye_m[2] = (float)(target[2] - from[0] * s + from[2] * c);
 }
 
 /* Where between first and last key: evenly, or so that the distance to the target shrinks in equal
@@ -108,8 +123,8 @@ double path_time(const struct scene *scene, size_t frame, size_t frames_count)
     if (frames_count <= 1)
         return 0;
     double turns = scene->camera.turn_rad / TWO_PI;
-    bool closed =
-        scene->camera.kind == PATH_ORBIT && fabs(turns) > 0.5 && fabs(turns - round(turns)) < 1e-5;
+    bool closed = scene->camera.kind == PATH_ORBIT && scene->camera.rise_rad == 0 &&
+                  fabs(turns) > 0.5 && fabs(turns - round(turns)) < 1e-5;
     return (double)frame / (double)(closed ? frames_count : frames_count - 1);
 }
 

@@ -117,6 +117,9 @@ void describe_camera(struct arena *arena, struct json *root, struct description 
     path->turn_rad = (float)(json_number(camera, "turn_deg", 360, -3600, 3600) * DEGREE);
     if (path->kind != PATH_ORBIT && json_has(camera, "turn_deg"))
         json_fail(camera, "turn_deg", "means nothing to this kind; allowed: with orbit");
+    path->rise_rad = (float)(json_number(camera, "rise_deg", 0, -180, 180) * DEGREE);
+    if (path->kind != PATH_ORBIT && json_has(camera, "rise_deg"))
+        json_fail(camera, "rise_deg", "means nothing to this kind; allowed: with orbit");
     path->clearance_m = (float)json_number(camera, "clearance_m", 1, 0, 10000);
     path->fov_y_rad = (float)(json_number(camera, "fov_y_deg", 45, 1, 170) * DEGREE);
     path->near_m = (float)json_number(camera, "near_m", 0, 0.001, 1e5);

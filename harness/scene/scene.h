@@ -64,15 +64,16 @@ struct camera_key {
 };
 
 /* Keys already in metres (JSON may give them in units of the forest's half side). still: 1 key;
- * orbit: 1 key, the eye turns around the target by turn_rad; walk, fly-over, approach: straight
- * from first to last key (approach in equal ratios of distance to the target; walk keeps the eye's
- * height above the ground, which changes evenly from the first key's to the last's); keys:
- * Catmull-Rom through all. clearance_m keeps the eye above the terrain. */
+ * orbit: 1 key, the eye turns around the target by turn_rad and rises by rise_rad, at most to
+ * straight above or below it; walk, fly-over, approach: straight from first to last key (approach
+ * in equal ratios of distance to the target; walk keeps the eye's height above the ground, which
+ * changes evenly from the first key's to the last's); keys: Catmull-Rom through all. clearance_m
+ * keeps the eye above the terrain. */
 struct camera_path {
     enum path_kind kind;
     size_t keys_count;
     struct camera_key *keys;
-    float turn_rad;
+    float turn_rad, rise_rad;
     float clearance_m;
     float fov_y_rad;
     float near_m, far_m; /* near > 0; the frustum holds the whole scene */
@@ -151,6 +152,10 @@ double path_time(const struct scene *scene, size_t frame, size_t frames_count);
  * -z; straight up, +z. */
 void view_look_at(const struct scene *scene, const float eye_m[3], const float target_m[3],
                   struct view *view);
+
+/* Where the eye stands as seen from what it looks at: its elevation above the horizon, -90..90, and
+ * its azimuth, 0..360, measured as the sun's: 0 is toward +z, grows toward +x. */
+void view_angles_deg(const struct view *view, double *elevation_deg, double *azimuth_deg);
 
 /* Unit direction of the ray through image point (x, y) in pixels, origin at the top left corner of
  * the picture. */

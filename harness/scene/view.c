@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+static const double DEGREE = 0.017453292519943295;
+
 static void cross3(const double a[3], const double b[3], double to[3])
 {
     to[0] = a[1] * b[2] - a[2] * b[1];
@@ -120,6 +122,17 @@ void view_look_at(const struct scene *scene, const float eye_m[3], const float t
         view->near_m = fminf(view->near_m, scene->camera.near_m);
     view->far_m = fmaxf(view->far_m, scene->camera.far_m);
     view_fill(scene, eye_m, target_m, view);
+}
+
+/* The way that the camera looks, tilted back to the horizon, is cos(elevation) forward +
+ * sin(elevation) up: known straight down, too, by where the picture's top is. */
+void view_angles_deg(const struct view *view, double *elevation_deg, double *azimuth_deg)
+{
+    const float *forward = view->forward, *up = view->up;
+    double level = hypot(forward[0], forward[2]), x = forward[0] * level - forward[1] * up[0],
+           z = forward[2] * level - forward[1] * up[2];
+    *elevation_deg = atan2(0.0 - forward[1], level) / DEGREE; /* never -0 */
+    *azimuth_deg = fmod(atan2(-x, -z) / DEGREE + 360, 360);
 }
 
 void view_ray(const struct view *view, float x_px, float y_px, float direction[3])

@@ -70,11 +70,11 @@ const numbersOf = (row) => data.columns
     make("td.n", null, short(column.values[row.index], 4)), make("td", null, column.unit), make("td.soft", null, column.doc)));
 
 const picturesOf = (row) => viewsWithPictures(row).map((view) => {
-  const picture = imageOf(row, view, "picture"), [time, distance] = row.views[view];
+  const picture = imageOf(row, view, "picture");
   const shown = [["reference, same effects", referenceOf(picture, "same")],
     picture.dataset.same !== picture.dataset.full && ["reference, all effects", referenceOf(picture, "full")],
     [row.label, picture], ["FLIP map", imageOf(row, view, "flip")], ["coverage map", imageOf(row, view, "coverage")]];
-  return [make("h4", null, `view ${view + 1} `, make("span.soft", null, `at ${plain(time)} of the path, ${plain(distance)} m to the trees`)),
+  return [make("h4", null, `view ${view + 1} `, make("span.soft", null, `at ${plain(row.views[view][0])} of the path, ${whereOf(row.views[view])}`)),
     make("div.cards", null, shown.filter((item) => item && item[1]).map(([name, image]) =>
       make("figure.card", null, make("figcaption", null, name), fullSize(image))))];
 });

@@ -35,11 +35,11 @@ const startCompare = () => {
     place("live-compare").replaceChildren(
       make("div.controls", null,
         choice("method", list.map((row) => [row.index, row.label]), at.row.index, (index) => { at.row = rows[index]; redraw(); }),
-        choice("view", views.map((view) => [view, `${view + 1}, ${plain(at.row.views[view][1])} m`]), at.view, (view) => { at.view = view; redraw(); })),
+        choice("view", views.map((view) => [view, `${view + 1}, ${whereOf(at.row.views[view])}`]), at.view, (view) => { at.view = view; redraw(); })),
       make("div.compare", null,
         make("figure", null, slider(picture, reference, at.row),
           make("figcaption", null, `${at.row.group.title}, view ${at.view + 1}. `,
-            errors.length > 2 ? `${metric().heading} ${plain(errorsOfView(errors, "same"))} (same effects), ${plain(errorsOfView(errors, "full"))} (all effects). ` : "",
+            errors.length > VIEW_ERRORS ? `${metric().heading} ${plain(errorsOfView(errors, "same"))} (same effects), ${plain(errorsOfView(errors, "full"))} (all effects). ` : "",
             reference ? "" : "This page does not hold the reference. ", linkTo(at.row))),
         make("div.compare-maps", null,
           map("flip", "FLIP map, same effects: dark is the same, bright differs"),

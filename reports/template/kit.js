@@ -28,8 +28,14 @@ const seen = (row) => row.ok && !row.floor && !chosen.hidden.has(row.method);
 const metric = () => data.metrics[chosen.metric];
 const asError = (value) => (value === null || value === undefined ? null : metric().one_minus ? 1 - value : value);
 const errorOf = (row, effects = chosen.effects) => asError(valueOf(row, `${effects}_${metric().key}`));
+// A view: time, distance, elevation, azimuth and, where it was compared, errors and noise.
+const VIEW_ERRORS = 4;
+const whereOf = ([, distance, elevation, azimuth]) =>
+  `${plain(distance)} m${elevation === null ? "" : `, ${plain(elevation, 2)}\u00b0 up, azimuth ${plain(azimuth)}\u00b0`}`;
+const comparedViews = (row) => row.views.filter((view) => view.length > VIEW_ERRORS);
 const errorsOfView = (view, effects = chosen.effects) =>
-  asError(view[2 + chosen.metric + (effects === "full" ? data.metrics.length : 0)]);
+  asError(view[VIEW_ERRORS + chosen.metric + (effects === "full" ? data.metrics.length : 0)]);
+const noiseOfView = (view) => asError(view[VIEW_ERRORS + chosen.metric + 2 * data.metrics.length]);
 const effectsText = (effects = chosen.effects) => (effects === "same" ? "same effects" : "all effects");
 
 // ---- Numbers for people; not measured is a dash.

@@ -56,6 +56,7 @@ startTrade();
 startSplit();
 startGrowth();
 startDistance();
+startAngles();
 startCost();
 startCompare();
 startTable();

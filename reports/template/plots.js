@@ -1,4 +1,4 @@
-// The three charts: error against time, frame rate against trees, error against distance.
+// The charts: error against time, frame rate against trees, error against distance and view angle.
 "use strict";
 const timeAxis = () => (chosen.rate ? "frames a second" : "time a frame [ms]");
 const asTime = (secondsValue) => (chosen.rate ? 1 / secondsValue : 1e3 * secondsValue);
@@ -53,7 +53,7 @@ const legend = (methods) => make("p.legend", null, methods.map((method) =>
 const tradeSpec = (list) => {
   const front = frontOf(list), points = [];
   for (const row of list) {
-    const views = row.views.filter((view) => view.length > 2).map((view) => errorsOfView(view)).filter((error) => error !== null);
+    const views = comparedViews(row).map((view) => errorsOfView(view)).filter((error) => error !== null);
     const [x, x0, x1] = timesOf(row), on = front.includes(row);
     points.push({ row, x, x0, x1, y: errorOf(row), y0: Math.min(...views), y1: Math.max(...views), filled: on, note: on ? row.variant : "" });
     if (!views.length) points[points.length - 1].y0 = points[points.length - 1].y1 = errorOf(row);
@@ -138,34 +138,71 @@ const startGrowth = () => {
   keepWidth(at.chartPlace, redraw);
 };
 
-const startDistance = () => {
-  const at = figure("live-distance", "");
+// Error against what the camera changes: column of a view, axes, words. An angle counts where the distance is kept.
+const degreeAxis = (values) => {
+  const low = Math.min(...values), high = Math.max(...values), margin = 0.02 * (high - low) || 1;
+  const step = [1, 2, 5, 10, 15, 30, 45, 90].find((size) => high - low <= 9 * size) || 90, ticks = [];
+  for (let tick = Math.ceil(low / step) * step; tick <= high + 1e-6; tick += step) ticks.push(tick);
+  const at = (value) => (value - low + margin) / (high - low + 2 * margin);
+  return { low: low - margin, high: high + margin, ticks, text: (tick) => `${tick}\u00b0`, at };
+};
+const viewAxes = {
+  distance: { column: 1, xTitle: "median distance to the trees in view [m]", axis: (xs) => logAxis(xs, 0.04, 0.04) },
+  elevation: { column: 2, xTitle: "elevation of the eye above the trees", axis: degreeAxis },
+  azimuth: { column: 3, xTitle: "azimuth of the eye around the trees", axis: degreeAxis },
+};
+const goes = (word, list) => {
+  const ends = (column) => {
+    const values = list.flatMap((row) => comparedViews(row).map((view) => view[column])).filter((value) => value !== null);
+    return [Math.min(...values), Math.max(...values)];
+  };
+  const [near, far] = ends(1), walks = far > 1.1 * near;
+  if (word === "distance" || walks) return word === "distance" && walks;
+  const [low, high] = ends(viewAxes[word].column);
+  return high - low >= 10 && list.every((row) => comparedViews(row).length > 2);
+};
+
+const viewsSpec = (word, list) => {
+  const { column, xTitle, axis } = viewAxes[word], points = [], lines = [], noise = new Map();
+  for (const row of list) {
+    const views = comparedViews(row).filter((view) => view[column] !== null && errorsOfView(view) !== null).sort((a, b) => a[column] - b[column]);
+    const of = views.map((view) => [view[column], errorsOfView(view)]);
+    for (const view of views) noise.set(view[column], Math.max(noiseOfView(view) ?? 0, noise.get(view[column]) ?? 0));
+    for (const [x, y] of of) points.push({ row, x, y, filled: variantOf(row) === 0 });
+    if (of.length) lines.push({ color: row.method.color, dash: dashes[variantOf(row) % dashes.length], points: of });
+  }
+  const ys = points.map((point) => point.y), floor = [...noise].sort((a, b) => a[0] - b[0]);
+  const noisy = chosen.effects === "same" && Math.max(...noise.values()) > Math.min(...ys.filter((y) => y > 0)) / 20;
+  if (noisy) lines.push({ color: "muted", dash: "1 3", points: floor });
+  return {
+    points, lines, noisy, label: `${metric().heading} against ${word}`, xTitle,
+    yTitle: `${metric().heading}, reference with ${effectsText()}`,
+    x: axis(points.map((point) => point.x)), y: logAxis(ys.concat(noisy ? floor.map(([, y]) => y) : []), 0.08, 0.08),
+  };
+};
+
+const startViews = (word, missing) => {
+  if (!place(`live-${word}`)) return;
+  const at = figure(`live-${word}`, "");
   const redraw = () => {
     const list = rowsOf(chosen.group).filter((row) => seen(row) && errorOf(row) !== null);
-    const points = [], lines = [];
-    for (const row of list) {
-      const of = row.views.filter((view) => view.length > 2 && view[1] > 0 && errorsOfView(view) !== null)
-        .map((view) => [view[1], errorsOfView(view)]).sort((a, b) => a[0] - b[0]);
-      for (const [x, y] of of) points.push({ row, x, y, filled: variantOf(row) === 0 });
-      lines.push({ color: row.method.color, dash: dashes[variantOf(row) % dashes.length], points: of });
-    }
-    const xs = points.map((point) => point.x), far = Math.max(...xs), near = Math.min(...xs);
-    const walks = points.length && far > 1.1 * near;
-    at.again.replaceChildren(walks ? redo(list) : "");
-    if (!walks) {
-      at.chartPlace.replaceChildren(make("p.soft", null, points.length
-        ? `In ${chosen.group.title} the camera keeps its distance to the trees (${plain(near)} to ${plain(far)} m); a scene that walks or flies in shows how errors grow near by.`
-        : "No cell that is switched on here was compared."));
-      at.below.replaceChildren("");
+    const there = list.length && goes(word, list);
+    at.again.replaceChildren(there ? redo(list) : "");
+    at.below.replaceChildren("");
+    if (!there) {
+      at.chartPlace.replaceChildren(make("p.soft", null, list.length ? missing() : "No cell that is switched on here was compared."));
       return;
     }
-    chart(at.chartPlace, {
-      points, lines: lines.filter((line) => line.points.length), label: `${metric().heading} against distance`,
-      xTitle: "median distance to the trees in view [m]", yTitle: `${metric().heading}, reference with ${effectsText()}`,
-      x: logAxis(xs, 0.04, 0.04), y: logAxis(points.map((point) => point.y), 0.08, 0.08),
-    });
-    at.below.replaceChildren(`${chosen.group.title}. One point a view; the lines join the views of a cell.`);
+    const spec = viewsSpec(word, list);
+    chart(at.chartPlace, spec);
+    at.below.replaceChildren(`${chosen.group.title}. One point a view; the lines join the views of a cell.${spec.noisy ? " Dotted: the noise of the reference." : ""}`);
   };
   onChange(redraw);
   keepWidth(at.chartPlace, redraw);
+};
+const startDistance = () => startViews("distance", () =>
+  `In ${chosen.group.title} the camera keeps its distance to the trees; a scene that walks or flies in shows how errors grow near by.`);
+const startAngles = () => {
+  startViews("elevation", () => `In ${chosen.group.title} the camera does not rise at one distance; view-elevation is a scene where it does.`);
+  startViews("azimuth", () => `In ${chosen.group.title} the camera does not go around at one distance; view-azimuth is a scene where it does.`);
 };

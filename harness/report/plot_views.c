@@ -1,0 +1,170 @@
+/* The static plots of error against what the camera changes along its path: its distance to the
+ * trees or, where it keeps that, the elevation and the azimuth that it sees them from. */
+#include "report/plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* More lines than this no static plot tells apart. */
+enum { LINES_MAX = 24 };
+
+/* In order of enum view_axis. */
+static const struct {
+    enum figure_kind kind;
+    const char *slug, *label;
+} kinds[] = {
+    {FIGURE_DISTANCE, "distance", "median distance to the trees in view [m]"},
+    {FIGURE_ELEVATION, "elevation", "elevation of the eye above the trees [degrees]"},
+    {FIGURE_AZIMUTH, "azimuth", "azimuth of the eye around the trees [degrees]"},
+};
+
+struct sight {
+    double at, error, noise; /* noise: of the reference */
+};
+
+static int compare_sights(const void *a, const void *b)
+{
+    const struct sight *x = a, *y = b;
+    return (x->at > y->at) - (x->at < y->at);
+}
+
+/* A row's compared views in order of the axis; sights has a place for each view. */
+static size_t sights_of(const struct row *row, enum view_axis axis, struct sight *sights)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < row->seen->views_count && row->compared && !row->is_floor; i++) {
+        const struct result_view *view = &row->seen->views[i];
+        double at = axis == VIEW_DISTANCE    ? view->distance_m
+                    : axis == VIEW_ELEVATION ? view->elevation_deg
+                                             : view->azimuth_deg;
+        if (view->compared && !isnan(at) && (axis != VIEW_DISTANCE || at > 0))
+            sights[count++] = (struct sight){at, view->same.value.flip, view->same.floor.flip};
+    }
+    qsort(sights, count, sizeof *sights, compare_sights);
+    return count;
+}
+
+/* The noise of the references at each view: the largest of any row, as rows differ in the effects
+ * that their references have. */
+struct noise {
+    struct sight *sights;
+    size_t count;
+    double most;
+};
+
+/* A group's views along the axis. */
+struct span {
+    struct axis x, y;
+    double low, high;   /* along the axis, any sign */
+    size_t views_least; /* of a compared row */
+    struct noise noise;
+};
+
+static void span_add(struct span *span, const struct sight *sights, size_t count)
+{
+    if (!count)
+        return;
+    span->views_least = span->views_least && span->views_least < count ? span->views_least : count;
+    bool first = span->noise.count == 0;
+    for (size_t i = 0; i < count; i++) {
+        axis_add(&span->x, sights[i].at);
+        axis_add(&span->y, sights[i].error);
+        span->low = fmin(span->low, sights[i].at);
+        span->high = fmax(span->high, sights[i].at);
+        span->noise.most = fmax(span->noise.most, sights[i].noise);
+        if (first)
+            span->noise.sights[span->noise.count++] = sights[i];
+        else if (count == span->noise.count)
+            span->noise.sights[i].noise = fmax(span->noise.sights[i].noise, sights[i].noise);
+    }
+}
+
+static struct span span_of(const struct book *book, const struct group *group, enum view_axis axis)
+{
+    struct span span = {.x = axis_empty(), .y = axis_empty(), .low = INFINITY, .high = -INFINITY};
+    size_t most = 0;
+    for (size_t i = 0; i < group->rows_count; i++) {
+        size_t count = book->rows[group->rows[i]].seen->views_count;
+        most = count > most ? count : most;
+    }
+    struct sight *sights = ARENA_ARRAY(book->arena, struct sight, most);
+    span.noise.sights = ARENA_ARRAY(book->arena, struct sight, most);
+    for (size_t i = 0; i < group->rows_count; i++)
+        span_add(&span, sights, sights_of(&book->rows[group->rows[i]], axis, sights));
+    return span;
+}
+
+bool views_go(const struct book *book, const struct group *group, enum view_axis axis)
+{
+    static const double NEARER = 1.1, TURNED_DEG = 10;
+    static const size_t VIEWS_LEAST = 3;
+    struct span span = span_of(book, group, VIEW_DISTANCE);
+    bool walks = span.x.high > NEARER * span.x.low;
+    if (axis == VIEW_DISTANCE || walks)
+        return axis == VIEW_DISTANCE && walks;
+    span = span_of(book, group, axis);
+    return span.high - span.low >= TURNED_DEG && span.views_least >= VIEWS_LEAST;
+}
+
+static void put_curve(struct plot *plot, const struct row *row, enum view_axis axis)
+{
+    const struct book *book = plot->book;
+    struct sight *sights = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
+    size_t count = sights_of(row, axis, sights);
+    if (count == 0)
+        return;
+    int block = plot_block(plot, row->label);
+    for (size_t i = 0; i < count; i++)
+        fprintf(plot->dat, "%.9g %.9g\n", sights[i].at, fmax(sights[i].error, plot->y.low));
+    int variant = plot_variant(book, row->series);
+    plot_curve(plot);
+    fprintf(
+        plot->gp,
+        "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
+        "%d linecolor rgb \"#%06x\" title ",
+        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
+        tint_rgb(tint_method(book, row->method_index)));
+    plot_text(plot->gp, row->label);
+    plot->key_rows++;
+}
+
+static void put_noise(struct plot *plot, const struct noise *noise)
+{
+    int block = plot_block(plot, "noise of the reference");
+    for (size_t i = 0; i < noise->count; i++)
+        fprintf(plot->dat, "%.9g %.9g\n", noise->sights[i].at,
+                fmax(noise->sights[i].noise, plot->y.low));
+    plot_curve(plot);
+    fprintf(plot->gp,
+            "\"%s.dat\" index %d with lines linewidth 1 dashtype 3 linecolor rgb \"#%06x\" title "
+            "\"noise of the reference\"",
+            plot->name, block, tint_rgb(TINT_MUTED));
+    plot->key_rows++;
+}
+
+enum status plot_views(const struct book *book, const struct group *group, enum view_axis axis,
+                       const char *folder, struct figure *figure, struct error *error)
+{
+    if (!views_go(book, group, axis) || group->rows_count > LINES_MAX)
+        return STATUS_OK;
+    struct span span = span_of(book, group, axis);
+    bool noisy = span.noise.most > span.y.low / 20;
+    for (size_t i = 0; i < span.noise.count && noisy; i++)
+        axis_add(&span.y, span.noise.sights[i].noise);
+    if (axis == VIEW_DISTANCE)
+        axis_widen(&span.x, 0.05, 0.05);
+    else
+        span.x = axis_degrees(span.low, span.high);
+    axis_widen(&span.y, 0.08, 0.08);
+    struct plot plot;
+    figure->kind = kinds[axis].kind;
+    plot_open(&plot, book, folder,
+              arena_printf(book->arena, "%s-%s", kinds[axis].slug, group->slug), group->title);
+    plot_axes(&plot, &span.x, &span.y, kinds[axis].label, "FLIP, reference with same effects");
+    fputs("set key maxcols 1\n", plot.gp);
+    for (size_t i = 0; i < group->rows_count; i++)
+        put_curve(&plot, &book->rows[group->rows[i]], axis);
+    if (noisy)
+        put_noise(&plot, &span.noise);
+    return plot_close(&plot, figure, error);
+}
