@@ -122,6 +122,7 @@ const struct method cross_quads_method = {
     .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
     .options = table,
     .options_size = sizeof(struct options),
+    .supported = method_needs_no_stretch,
     .prepare = prepare,
     .draw = draw,
 };

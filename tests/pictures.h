@@ -48,7 +48,7 @@ static inline void scene_plant(struct arena *arena, struct scene *scene, const s
     scene->instances_count = instances_count;
     scene->instances = ARENA_ARRAY(arena, struct instance, instances_count);
     for (size_t i = 0; i < instances_count; i++)
-        scene->instances[i].scale = 1;
+        scene->instances[i].scale = scene->instances[i].stretch = 1;
 }
 
 struct picture {

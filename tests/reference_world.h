@@ -128,7 +128,7 @@ static inline struct instance *world_add(struct world *world, const struct mesh 
     struct species *species = &scene->species[scene->species_count];
     *species = (struct species){"test", plant_from_mesh(world->arena, "test", mesh), 1, 1, 1};
     struct instance *instance = &scene->instances[scene->instances_count++];
-    *instance = (struct instance){{x, y, z}, 0, 1, (uint32_t)scene->species_count++};
+    *instance = (struct instance){{x, y, z}, 0, 1, (uint32_t)scene->species_count++, 1};
     return instance;
 }
 

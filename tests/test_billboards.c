@@ -54,8 +54,8 @@ static void test_billboards__a_turned_moved_and_scaled_tree_stands_where_it_shou
 {
     struct fixture *f = *state;
     struct scene *scene = tree_scene(f->arena, f->plant, 2, 1);
-    scene->instances[0] = (struct instance){{-1.5f, 0.5f, 1}, 0.7853982f, 0.8f, 0};
-    scene->instances[1] = (struct instance){{2, -0.5f, -2}, 3.9269908f, 0.6f, 0};
+    scene->instances[0] = (struct instance){{-1.5f, 0.5f, 1}, 0.7853982f, 0.8f, 0, 1};
+    scene->instances[1] = (struct instance){{2, -0.5f, -2}, 3.9269908f, 0.6f, 0, 1};
     struct view view = tree_view(scene, 0.3926991f, 0, 300, 9);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
     struct frame *drawn =

@@ -25,7 +25,8 @@ static struct scene *random_forest(struct arena *arena, struct cull_bound bounds
                                400 * random_float(&random) - 200},
                               6 * random_float(&random),
                               0.5f + random_float(&random),
-                              random_below(&random, 2)};
+                              random_below(&random, 2),
+                              1};
     bounds[0] = (struct cull_bound){6, 7};
     bounds[1] = (struct cull_bound){-1, 3};
     return scene;

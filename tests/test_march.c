@@ -317,8 +317,9 @@ static struct world world_of_balls(size_t trees, size_t leaves, double leg_m)
     struct world world = world_create(96, 80, 0.6);
     struct scene *scene = &world.scene;
     struct mesh *mesh = ball_of_leaves(world.arena, leaves, leg_m);
-    static const struct instance places[3] = {
-        {{0, 0, 0}, 0.3f, 1, 0}, {{3, 0, 2}, 1.9f, 1, 0}, {{0.2f, 2.5f, 0.1f}, 4, 0.5f, 0}};
+    static const struct instance places[3] = {{{0, 0, 0}, 0.3f, 1, 0, 1},
+                                              {{3, 0, 2}, 1.9f, 1, 0, 1},
+                                              {{0.2f, 2.5f, 0.1f}, 4, 0.5f, 0, 1}};
     scene->species_count = 1;
     scene->species[0] =
         (struct species){"ball", plant_from_mesh(world.arena, "ball", mesh), 1, 1, 1};
@@ -420,7 +421,7 @@ static void test_march__thin_slabs_of_overlapping_trees_sum_their_densities(void
         (struct species){"dark", plant_from_mesh(world.arena, "dark", dark), 1, 1, 1};
     scene->species_count = 2;
     for (int k = 0; k < 4; k++) {
-        scene->instances[0] = scene->instances[1] = (struct instance){{0, 0, 0}, 0.3f, 1, 0};
+        scene->instances[0] = scene->instances[1] = (struct instance){{0, 0, 0}, 0.3f, 1, 0, 1};
         scene->instances[1].species = 1;
         if (k == 2)
             scene->instances[0].species = 1;

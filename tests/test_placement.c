@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 static struct plant_entry plants[2] = {
-    {.name = "oak", .weight = 3, .scale = {1, 2}, .reach_m = 20},
-    {.name = "poplar", .weight = 1, .scale = {3, 3}, .reach_m = 20},
+    {.name = "oak", .weight = 3, .scale = {1, 2}, .stretch = {1, 1}, .reach_m = 20},
+    {.name = "poplar", .weight = 1, .scale = {3, 3}, .stretch = {0.5f, 2}, .reach_m = 20},
 };
 
 static struct description grid_of(double spacing_m, double jitter)
@@ -159,6 +159,7 @@ static void test_trees__turn_scale_and_species_follow_their_distributions(void *
     double half_m, chi2 = 0, scale_sum = 0;
     struct instance *trees = place(arena, &description, TREES, 11, &half_m);
     unsigned bins[BINS] = {0}, oaks = 0;
+    double stretch_sum = 0;
     for (int k = 0; k < TREES; k++) {
         double turn = trees[k].rotation_rad / 6.283185307179586;
         assert_true(turn >= 0 && turn <= 1);
@@ -167,8 +168,11 @@ static void test_trees__turn_scale_and_species_follow_their_distributions(void *
         if (trees[k].species == 0) {
             assert_true(trees[k].scale >= 1 && trees[k].scale <= 2);
             scale_sum += trees[k].scale;
+            assert_float_equal(trees[k].stretch, 1, 0);
         } else {
             assert_float_equal(trees[k].scale, 3, 0);
+            assert_true(trees[k].stretch >= 0.5f && trees[k].stretch <= 2);
+            stretch_sum += trees[k].stretch;
         }
         assert_float_equal(trees[k].position_m[1], 0, 0);
     }
@@ -178,6 +182,8 @@ static void test_trees__turn_scale_and_species_follow_their_distributions(void *
     assert_true(chi2 > 8.5); /* and not too even: P(chi2 < 8.5) = 2e-5 */
     assert_true(fabs(oaks - 0.75 * TREES) < 4.5 * sqrt(TREES * 0.75 * 0.25));
     assert_true(fabs(scale_sum / oaks - 1.5) < 4.5 / sqrt(12.0 * oaks));
+    assert_true(fabs(stretch_sum / (TREES - oaks) - 1.25) <
+                4.5 * 1.5 / sqrt(12.0 * (TREES - oaks)));
     description.placement.rotate = false;
     trees = place(arena, &description, 10, 11, &half_m);
     for (int k = 0; k < 10; k++)
@@ -216,6 +222,25 @@ static void test_seed__the_same_is_the_same_forest_and_another_is_another(void *
         assert_memory_not_equal(first, other, bytes);
         arena_destroy(arena);
     }
+}
+
+static void test_stretch__leaves_place_turn_scale_and_species_as_they_are(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct description description = grid_of(10, 1);
+    struct plant_entry plain[2];
+    double half_m;
+    struct instance *stretched = place(arena, &description, 100, 3, &half_m);
+    memcpy(plain, description.plants, sizeof plain);
+    plain[1].stretch[0] = plain[1].stretch[1] = 1;
+    description.plants = plain;
+    struct instance *trees = place(arena, &description, 100, 3, &half_m);
+    for (int k = 0; k < 100; k++) {
+        assert_memory_equal(&stretched[k], &trees[k], offsetof(struct instance, stretch));
+        assert_float_equal(trees[k].stretch, 1, 0);
+    }
+    arena_destroy(arena);
 }
 
 static void test_poisson__the_number_is_exact_and_no_two_trees_are_nearer_than_asked(void **state)
@@ -405,8 +430,8 @@ static void test_file__rows_with_few_or_many_columns_are_read(void **state)
     struct instance *trees;
     struct error error;
     double half_m;
-    const char *text = "# x z rotation scale species\r\n"
-                       "1, 2, 90, 1.5, poplar\r\n"
+    const char *text = "# x z rotation scale species stretch\r\n"
+                       "1, 2, 90, 1.5, poplar, 0.75\r\n"
                        "\n"
                        "-3.5 4\n"
                        "\t7;-8;180;2 # the last";
@@ -416,6 +441,7 @@ static void test_file__rows_with_few_or_many_columns_are_read(void **state)
     assert_float_equal(trees[0].rotation_rad, 1.5707963, 1e-6);
     assert_float_equal(trees[0].scale, 1.5, 0);
     assert_int_equal(trees[0].species, 1);
+    assert_float_equal(trees[0].stretch, 0.75, 0);
     assert_float_equal(trees[1].position_m[0], -3.5, 0);
     assert_float_equal(trees[2].scale, 2, 0);
     assert_float_equal(half_m, 8, 0);
@@ -439,7 +465,8 @@ static void test_file__bad_rows_are_refused_with_line_column_and_allowance(void 
         {"1 2 east\n", ":1:", "rotation_deg: value is 'east'"},
         {"1 2 3 0\n", ":1:", "scale: value is '0'; allowed: a number in 0.001..1000"},
         {"1 2 3 1 elm\n", ":1:", "species: value is 'elm'; allowed: oak, poplar"},
-        {"1 2 3 1 oak 6\n", ":1:", "column 6 is '6'"},
+        {"1 2 3 1 oak 9\n", ":1:", "stretch: value is '9'; allowed: a number in 0.125..8"},
+        {"1 2 3 1 oak 1 7\n", ":1:", "column 7 is '7'"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         struct arena *arena = arena_create(0);
@@ -466,6 +493,7 @@ int main(void)
         cmocka_unit_test(test_trees__turn_scale_and_species_follow_their_distributions),
         cmocka_unit_test(test_trees__a_species_of_no_weight_is_never_drawn),
         cmocka_unit_test(test_seed__the_same_is_the_same_forest_and_another_is_another),
+        cmocka_unit_test(test_stretch__leaves_place_turn_scale_and_species_as_they_are),
         cmocka_unit_test(test_poisson__the_number_is_exact_and_no_two_trees_are_nearer_than_asked),
         cmocka_unit_test(test_poisson__a_full_square_is_maximal_and_has_the_jamming_density),
         cmocka_unit_test(test_poisson__trees_are_spread_evenly_over_the_square),

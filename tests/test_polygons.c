@@ -204,17 +204,20 @@ static int expected(const struct scene *scene, const struct view *view, const st
         return 0;
     const struct material *material = &mesh->materials[part_of(mesh, best.triangle)->material];
     const uint32_t *corners = mesh->triangles[best.triangle];
-    double normal[3] = {0, 0, 0}, albedo[3], length = 0, weights[3];
+    double normal[3] = {0, 0, 0}, albedo[3], length = 0, weights[3], squares[3];
     weights[0] = 1 - best.p - best.q;
     weights[1] = best.p;
     weights[2] = best.q;
+    for (int k = 0; k < 3;
+         k++) /* M's columns are perpendicular: those of M^-T are M's over these */
+        squares[k] = glm_vec3_norm2(matrix[k]);
     for (int axis = 0; axis < 3; axis++) {
         albedo[axis] = 0;
         for (int c = 0; c < 3; c++) {
             const float *n = mesh->normals[corners[c]];
-            normal[axis] +=
-                weights[c] * ((double)matrix[0][axis] * n[0] + (double)matrix[1][axis] * n[1] +
-                              (double)matrix[2][axis] * n[2]);
+            normal[axis] += weights[c] * ((double)matrix[0][axis] * n[0] / squares[0] +
+                                          (double)matrix[1][axis] * n[1] / squares[1] +
+                                          (double)matrix[2][axis] * n[2] / squares[2]);
             albedo[axis] += weights[c] * mesh->colors[corners[c]][axis] * material->albedo[axis];
         }
         albedo[axis] *= material->texture ? 0.5 : 1;
@@ -233,9 +236,9 @@ static void compare_with_rays(struct arena *arena, const char *options, const st
 {
     struct scene *scene = scene_by_hand(arena, WIDTH, HEIGHT);
     scene_plant(arena, scene, mesh, 3);
-    scene->instances[0] = (struct instance){{0, 0, 0}, 0.7f, 1, 0};
-    scene->instances[1] = (struct instance){{3, 0.5f, -6}, 2.5f, 1.7f, 0};
-    scene->instances[2] = (struct instance){{-4, -1, 2}, -1.2f, 0.8f, 0};
+    scene->instances[0] = (struct instance){{0, 0, 0}, 0.7f, 1, 0, 1};
+    scene->instances[1] = (struct instance){{3, 0.5f, -6}, 2.5f, 1.7f, 0, 0.6f};
+    scene->instances[2] = (struct instance){{-4, -1, 2}, -1.2f, 0.8f, 0, 1.8f};
     static const float eye[3] = {1, 5, 13}, target[3] = {-0.5f, 3.5f, 0};
     struct view view;
     view_look_at(scene, eye, target, &view);
@@ -436,7 +439,8 @@ static void test_polygons__a_far_tree_costs_two_triangles_and_keeps_its_cover(vo
             {2000 * random_float(&random) - 1000, 0, 2000 * random_float(&random) - 1000},
             6 * random_float(&random),
             1,
-            0};
+            0,
+            1};
     view_look_at(scene, eye, target, &view);
     struct setting setting = {
         .method = "polygons", .effects = EFFECTS, .lod = LOD_AUTO, .format = TARGET_RGBA32F};
@@ -516,7 +520,7 @@ static void test_polygons__the_back_ends_draw_the_same_bytes(void **state)
     scene_plant(arena, scene, mesh, 40);
     for (size_t i = 0; i < 40; i++)
         scene->instances[i] =
-            (struct instance){{(float)(i % 8) * 5 - 17, 0, -6 * (float)(i / 8)}, (float)i, 1, 0};
+            (struct instance){{(float)(i % 8) * 5 - 17, 0, -6 * (float)(i / 8)}, (float)i, 1, 0, 1};
     static const float eye[3] = {0, 12, 20}, target[3] = {0, 2, -5};
     struct view view;
     view_look_at(scene, eye, target, &view);

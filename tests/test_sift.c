@@ -108,7 +108,7 @@ static size_t left_of(struct arena *arena, const struct scene *scene, const stru
     struct sift_run run = {.set = set, .kept = (float)set->count, .growth = 1};
     struct sift_tree *trees = ARENA_ARRAY(arena, struct sift_tree, scene->instances_count);
     for (size_t i = 0; i < scene->instances_count; i++)
-        trees[i] = (struct sift_tree){&scene->instances[i], 0, 1, 0, 4, 3, false};
+        trees[i] = (struct sift_tree){&scene->instances[i], 0, 1, 0, 4, 3, false, 0};
     struct sift *sift = sift_create(arena, threads, 4096);
     struct sift_vertex *vertices =
         ARENA_ARRAY(arena, struct sift_vertex, sift_vertices_count(sift));
@@ -155,7 +155,8 @@ static void test_sift__small_triangles_are_left_as_often_as_they_meet_a_sample(v
                                up_m * (2 * random_float(&random) - 1) - 2, (float)i * 1e-4f},
                               0,
                               1,
-                              0};
+                              0,
+                              1};
     float eye[3] = {0, 0, depth_m + 1}, target[3] = {0, 0, 0};
     struct view view;
     view_look_at(scene, eye, target, &view);
@@ -182,7 +183,7 @@ static void test_sift__what_a_nearer_triangle_covers_is_dropped(void **state)
     struct view view;
     view_look_at(scene, eye, target, &view);
     for (int i = 0; i < 3; i++)
-        scene->instances[i] = (struct instance){{0, 0, i == 1 ? -1 : 0}, 0, 1, 0};
+        scene->instances[i] = (struct instance){{0, 0, i == 1 ? -1 : 0}, 0, 1, 0, 1};
     scene->instances_count = 1;
     size_t one = left_of(arena, scene, &view, &middle, leaf(arena, 4 * pixel_m), 2);
     scene->instances_count =

@@ -55,6 +55,7 @@ static int open_fixture(void **state)
         }
     }
     f->instance.scale = 1;
+    f->instance.stretch = 1;
     f->view = (struct view){.fov_y_rad = 0.5f,
                             .height_px = 600,
                             .width_px = 800,

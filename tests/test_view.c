@@ -444,12 +444,12 @@ static void test_sphere__one_that_reaches_into_the_frustum_is_never_culled(void 
 static void test_instance__matrix_is_shift_turn_and_scale_of_cglm(void **state)
 {
     (void)state;
-    struct instance instance = {{3, 4, 5}, 0.7f, 1.5f, 0};
+    struct instance instance = {{3, 4, 5}, 0.7f, 1.5f, 0, 2.5f};
     mat4 matrix, expected = GLM_MAT4_IDENTITY_INIT;
     instance_matrix(&instance, matrix);
     glm_translate(expected, instance.position_m);
     glm_rotate_y(expected, 0.7f, expected);
-    glm_scale_uni(expected, 1.5f);
+    glm_scale(expected, (vec3){1.5f, 2.5f * 1.5f, 1.5f});
     for (int c = 0; c < 4; c++)
         for (int r = 0; r < 4; r++)
             assert_float_equal(matrix[c][r], expected[c][r], 1e-6);
@@ -462,7 +462,7 @@ static void test_instance__matrix_is_shift_turn_and_scale_of_cglm(void **state)
 static void test_depths__hold_every_tree_and_lose_nothing_near(void **state)
 {
     (void)state;
-    struct instance trees[] = {{{0, 0, 0}, 0, 1, 0}, {{40, 0, -30}, 0, 1, 0}};
+    struct instance trees[] = {{{0, 0, 0}, 0, 1, 0, 1}, {{40, 0, -30}, 0, 1, 0, 1}};
     struct scene scene = scene_with(PATH_STILL, 1);
     scene.instances = trees;
     scene.instances_count = 2;

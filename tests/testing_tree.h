@@ -109,7 +109,7 @@ static inline struct scene *tree_scene(struct arena *arena, struct plant *plant,
     *scene->species = (struct species){"tree", plant, 1, 1, 1};
     scene->instances = ARENA_ARRAY(arena, struct instance, trees + 1);
     for (size_t i = 0; i < trees; i++)
-        scene->instances[i].scale = 1;
+        scene->instances[i].scale = scene->instances[i].stretch = 1;
     scene->camera = (struct camera_path){.kind = PATH_STILL,
                                          .keys_count = 1,
                                          .keys = ARENA_NEW(arena, struct camera_key),

@@ -118,7 +118,7 @@ enum status coloring_trace(struct arena *arena, struct plant *plant,
     if (status != STATUS_OK)
         return status;
     struct species species = {.plant = plant, .scale_min = 1, .scale_max = 1};
-    struct instance instance = {.scale = 1};
+    struct instance instance = {.scale = 1, .stretch = 1};
     struct scene scene = {
         .species_count = 1, .species = &species, .instances_count = 1, .instances = &instance};
     *capture = (struct images){.views_count = shots->count,

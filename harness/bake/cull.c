@@ -24,8 +24,10 @@ bool cull_cylinder_holds(const struct cull_cylinder *cylinder, const struct inst
     float x = eye_m[0] - foot[0], y = eye_m[1] - foot[1], z = eye_m[2] - foot[2];
     float reach_m = instance->scale * cylinder->radius_m + margin_m;
     return x * x + z * z <= reach_m * reach_m &&
-           y >= instance->scale * cylinder->low_m - margin_m &&
-           y <= instance->scale * cylinder->high_m + margin_m;
+           y >= instance->scale * (instance->stretch * cylinder->low_m - cylinder->beyond_m) -
+                    margin_m &&
+           y <= instance->scale * (instance->stretch * cylinder->high_m + cylinder->beyond_m) +
+                    margin_m;
 }
 
 struct cull *cull_create(struct arena *arena, const struct scene *scene,
@@ -45,9 +47,10 @@ struct cull *cull_create(struct arena *arena, const struct scene *scene,
         const struct instance *instance = &scene->instances[i];
         const struct cull_bound *bound = &bounds[instance->species];
         cull->x[i] = instance->position_m[0];
-        cull->y[i] = instance->position_m[1] + instance->scale * bound->center_y_m;
+        cull->y[i] =
+            instance->position_m[1] + instance->scale * instance->stretch * bound->center_y_m;
         cull->z[i] = instance->position_m[2];
-        cull->radius[i] = instance->scale * bound->radius_m;
+        cull->radius[i] = instance_reach(instance) * bound->radius_m;
     }
     return cull;
 }

@@ -6,16 +6,17 @@
 #include "base/arena.h"
 #include "scene/scene.h"
 
-/* A sphere that holds a plant of scale 1: its centre is on the plant's +y axis, so turning does not
- * move it. */
+/* A sphere that holds a plant of scale and stretch 1: its centre is on the plant's +y axis, so
+ * turning does not move it. */
 struct cull_bound {
     float center_y_m, radius_m;
 };
 struct cull_bound cull_bound_of(const struct mesh *mesh);
 
-/* The cylinder about its axis that holds a plant of scale 1. */
+/* The cylinder about its axis that holds a plant of scale and stretch 1. */
 struct cull_cylinder {
     float low_m, high_m, radius_m;
+    float beyond_m; /* longer at both ends, by the tree's scale alone */
 };
 /* Whether a tree's cylinder, margin_m wider and longer at both ends, holds the eye. */
 bool cull_cylinder_holds(const struct cull_cylinder *cylinder, const struct instance *instance,

@@ -207,12 +207,17 @@ struct levels_seen levels_seen(const struct levels *levels, const struct view *v
                                float tolerance_px, const struct instance *instance, float depth_m)
 {
     float slope = fabsf(view->forward[1]), half_m = 0.5f * (levels->high_m - levels->low_m);
-    float reach_m = half_m * slope + levels->radius_m * sqrtf(fmaxf(0, 1 - slope * slope));
+    float reach_m =
+        half_m * instance->stretch * slope + levels->radius_m * sqrtf(fmaxf(0, 1 - slope * slope));
     float near_m = fmaxf(view->near_m, depth_m - instance->scale * reach_m);
     const float *foot = instance->position_m, *eye = view->eye_m;
     float x = foot[0] - eye[0], z = foot[2] - eye[2];
-    float y = foot[1] + instance->scale * (levels->low_m + half_m) - eye[1];
-    return (struct levels_seen){.per_m = focal_px * instance->scale / (near_m * tolerance_px),
+    /* the elevation in the plant: what is hidden there behind what is hidden in the stretched tree
+     */
+    float y = foot[1] + instance->scale * instance->stretch * (levels->low_m + half_m) - eye[1];
+    y /= instance->stretch;
+    return (struct levels_seen){.per_m =
+                                    focal_px * instance_reach(instance) / (near_m * tolerance_px),
                                 .rise = y * y / fmaxf(x * x + y * y + z * z, 1e-30f)};
 }
 

@@ -36,8 +36,10 @@ void levels_fill(struct levels *levels, const struct mesh *mesh, const struct de
 
 /* How a tree is seen. */
 struct levels_seen {
-    float per_m; /* tolerances a metre at the nearest point of the cylinder that holds it */
-    float rise;  /* squared sine of the elevation it is seen from: 0 level, 1 straight down or up */
+    float per_m; /* tolerances a metre of the plant, at most, at the nearest point of the cylinder
+                    that holds the tree */
+    float rise;  /* squared sine of the elevation it is seen from, in the plant's space: 0 level, 1
+                    straight down or up */
 };
 /* depth_m: of its middle along the view. */
 struct levels_seen levels_seen(const struct levels *levels, const struct view *view, float focal_px,

@@ -65,11 +65,11 @@ enum status nearby_prepare(struct workspace *workspace, const struct scene *scen
             if (status != STATUS_OK)
                 return status;
             float beyond_m = fmaxf(radii - 1, 0) * mesh->radius_m;
-            *cylinder =
-                (struct cull_cylinder){mesh->minimum_m[1] - beyond_m, mesh->maximum_m[1] + beyond_m,
-                                       radii * mesh->radius_m};
+            *cylinder = (struct cull_cylinder){mesh->minimum_m[1], mesh->maximum_m[1],
+                                               radii * mesh->radius_m, beyond_m};
         }
-        float half_m = 0.5f * (cylinder->high_m - cylinder->low_m);
+        float half_m =
+            0.5f * tree->stretch * (cylinder->high_m - cylinder->low_m) + cylinder->beyond_m;
         nearby->reach_m =
             fmaxf(nearby->reach_m, tree->scale * 1.001f * hypotf(cylinder->radius_m, half_m));
     }

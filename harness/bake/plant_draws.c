@@ -23,6 +23,7 @@ struct plant_gl_placed plant_place(const struct levels *levels, uint32_t group,
     struct plant_gl_placed placed = {
         .scale = instance->scale,
         .turn = {cosf(instance->rotation_rad), sinf(instance->rotation_rad)},
+        .stretch = instance->stretch,
     };
     memcpy(placed.foot_m, instance->position_m, sizeof instance->position_m);
     if (group < levels->levels_count)

@@ -26,6 +26,7 @@ static GLuint vertex_array(struct gl *gl, GLuint vertices, GLsizei stride, size_
     attribute(gl, array, 2, 0, 4, GL_UNSIGNED_SHORT, albedo_offset);
     attribute(gl, array, 5, 2, 4, GL_FLOAT, offsetof(struct plant_gl_placed, foot_m));
     attribute(gl, array, 6, 2, 4, GL_FLOAT, offsetof(struct plant_gl_placed, turn));
+    attribute(gl, array, 8, 2, 2, GL_FLOAT, offsetof(struct plant_gl_placed, stretch));
     return array;
 }
 

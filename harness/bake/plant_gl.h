@@ -7,12 +7,14 @@
 #include "bake/prune.h"
 #include "method/method.h"
 
-/* The instanced attributes: place, turn (of the run of pruned elements: how many, their growth) and
- * run (the first element; the width from which on bark is left out, as stout.h packs it, unorm). */
+/* The instanced attributes: place, turn (of the run of pruned elements: how many, their growth),
+ * run (the first element; the width from which on bark is left out, as stout.h packs it, unorm) and
+ * shape (stretch; the first of the mean radiances that are the tree's). */
 struct plant_gl_placed {
     float foot_m[3], scale;
     float turn[2], kept, growth; /* cosine, sine */
     float begin, stout;
+    float stretch, mean;
 };
 
 struct plant_gl_batch {
@@ -24,7 +26,7 @@ struct plant_gl_batch {
 };
 
 /* Attributes 0 position, 1 normal, 2 albedo, 3 texture coordinates, 4 an element's centre, 5 place,
- * 6 turn, 7 run. */
+ * 6 turn, 7 run, 8 shape. */
 struct plant_gl {
     GLuint detail, pruned; /* vertex arrays; pruned 0: none */
     size_t batches_count;

@@ -31,10 +31,15 @@ struct prune {
 /* The arena is best a passing one: it also holds what was needed on the way. */
 struct prune *prune_create(struct arena *arena, const struct mesh *mesh, uint64_t seed);
 
+struct prune_light {
+    const struct scene *scene;
+    const struct view *view;
+    unsigned effects; /* as in effects.h */
+    float stretch;    /* of the tree */
+};
 /* Radiance of bark (0) and leaves (1) over all turns about the plant's axis, weighted by the area
- * that the view's direction sees. probes: one vertex of each of count elements, a random choice;
- * effects as in effects.h. */
-void prune_mean_radiance(const struct prune_vertex *probes, size_t count, const struct scene *scene,
-                         unsigned effects, const struct view *view, float mean[2][3]);
+ * that the view's direction sees. probes: one vertex of each of count elements, a random choice. */
+void prune_mean_radiance(const struct prune_vertex *probes, size_t count,
+                         const struct prune_light *light, float mean[2][3]);
 
 #endif

@@ -14,10 +14,25 @@ static float lambert(const struct view *view, bool both_sides, const float n[3],
     return both_sides ? fabsf(d) : fmaxf(0, toward_eye >= 0 ? d : -d);
 }
 
-void prune_mean_radiance(const struct prune_vertex *probes, size_t count, const struct scene *scene,
-                         unsigned effects, const struct view *view, float mean[2][3])
+/* The stretched tree's normal, made unit; returns by how much that shortened it: the share of an
+ * area that is turned so grows as much (the area's vector transforms as the normal does). */
+static float raise(float stretch, float n[3])
 {
-    bool two_sided = effects & EFFECT_TWO_SIDED;
+    if (stretch == 1)
+        return 1;
+    n[1] /= stretch;
+    float length = fmaxf(sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), 1e-12f);
+    for (int i = 0; i < 3; i++)
+        n[i] /= length;
+    return length;
+}
+
+void prune_mean_radiance(const struct prune_vertex *probes, size_t count,
+                         const struct prune_light *light, float mean[2][3])
+{
+    const struct scene *scene = light->scene;
+    const struct view *view = light->view;
+    bool two_sided = light->effects & EFFECT_TWO_SIDED;
     float seen[2] = {0, 0};
     memset(mean, 0, 2 * sizeof *mean);
     for (size_t i = 0; i < count; i++)
@@ -27,13 +42,15 @@ void prune_mean_radiance(const struct prune_vertex *probes, size_t count, const 
             float c = cosf(angle) / 32767, s = sinf(angle) / 32767;
             float n[3] = {probe->normal[0] * c + probe->normal[2] * s, probe->normal[1] / 32767.0f,
                           -probe->normal[0] * s + probe->normal[2] * c};
+            float area = raise(light->stretch, n);
             float toward_eye =
                 -(n[0] * view->forward[0] + n[1] * view->forward[1] + n[2] * view->forward[2]);
             int leaf = probe->normal[3] > 0;
-            float d = lambert(view, leaf && two_sided, n, toward_eye), weight = fabsf(toward_eye);
+            float d = lambert(view, leaf && two_sided, n, toward_eye),
+                  weight = area * fabsf(toward_eye);
             seen[leaf] += weight;
             for (int axis = 0; axis < 3; axis++) {
-                float ambient = effects & EFFECT_AMBIENT ? scene->ambient[axis] : 0;
+                float ambient = light->effects & EFFECT_AMBIENT ? scene->ambient[axis] : 0;
                 mean[leaf][axis] += weight * probe->albedo[axis] / 65535.0f *
                                     (scene->sun.radiance[axis] * d + ambient);
             }

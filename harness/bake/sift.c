@@ -91,8 +91,10 @@ static void share_rows(struct sift *sift, const struct view *view)
     for (size_t t = 0; t < sift->trees_count; t++) {
         const struct sift_tree *tree = &sift->trees[t];
         const float *at = tree->instance->position_m;
-        float middle[3] = {
-            at[0], at[1] + 0.5f * tree->instance->scale * (tree->low_m + tree->high_m), at[2]};
+        float middle[3] = {at[0],
+                           at[1] + 0.5f * tree->instance->scale * tree->instance->stretch *
+                                       (tree->low_m + tree->high_m),
+                           at[2]};
         float clip[3];
         sift_project(&sift->screen, middle, clip);
         float row = clip[2] > view->near_m ? clip[1] / clip[2] / (float)view->height_px : 0.5f;

@@ -19,7 +19,7 @@
 /* 28 bytes; of a plant in its own metres, of what is left in the world's. */
 struct sift_vertex {
     float position_m[3];
-    int16_t normal[4];  /* snorm; w: odd for leaves, the rest is the caller's */
+    int16_t normal[4];  /* snorm, at most 1 long; w: odd for leaves, the rest is the caller's */
     uint16_t albedo[4]; /* unorm; w: of bark, its width (stout.h); left, 1 / growth of the run */
 };
 
@@ -53,8 +53,11 @@ struct sift_run {
 struct sift_tree {
     const struct instance *instance;
     size_t first_run, runs_count;
-    float low_m, high_m, radius_m; /* the cylinder about its axis that holds it, at scale 1 */
-    bool within; /* the eye may be within it: back faces of closed surfaces are seen */
+    float low_m, high_m,
+        radius_m; /* the cylinder about its axis that holds it, at scale and stretch
+                     1 */
+    bool within;  /* the eye may be within it: back faces of closed surfaces are seen */
+    int16_t mean; /* even; added to its normals' w */
 };
 
 struct sift;

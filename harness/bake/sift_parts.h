@@ -25,7 +25,11 @@ struct sift_work {
     size_t filled[SIFT_STREAMS]; /* triangles */
     int stream;                  /* of the run at work */
     bool within;                 /* of the tree at work */
+    int16_t mean;
     float turn[2], scale, place[3];
+    float height;     /* scale along y */
+    float reach;      /* the larger of the two */
+    float normal[2];  /* what normals are shortened by, across and along y */
     float rows[3][4]; /* from the plant to the screen */
 };
 

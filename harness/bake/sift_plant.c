@@ -35,8 +35,7 @@ static size_t find_elements(const uint32_t *indices, size_t triangles, bool leaf
 }
 
 static struct sift_set *set_of_range(struct arena *arena, const struct detail *detail,
-                                     const struct detail_batch *batch, size_t level,
-                                     uint32_t species)
+                                     const struct detail_batch *batch, size_t level)
 {
     struct detail_range range = batch->levels[level];
     bool leaf = batch->kind == MATERIAL_LEAF;
@@ -50,7 +49,7 @@ static struct sift_set *set_of_range(struct arena *arena, const struct detail *d
         memcpy(vertices[i].position_m, from->position_m, sizeof from->position_m);
         memcpy(vertices[i].normal, from->normal, sizeof from->normal);
         memcpy(vertices[i].albedo, from->albedo, sizeof from->albedo);
-        vertices[i].normal[3] = (int16_t)(2 * species + leaf);
+        vertices[i].normal[3] = leaf;
     }
     struct sift_set *set = sift_set_create(arena, vertices, count, first, NULL);
     set->closed = batch->closed;
@@ -59,8 +58,7 @@ static struct sift_set *set_of_range(struct arena *arena, const struct detail *d
     return set;
 }
 
-static struct sift_set *set_of_pruned(struct arena *arena, const struct prune *prune,
-                                      uint32_t species)
+static struct sift_set *set_of_pruned(struct arena *arena, const struct prune *prune)
 {
     struct arena *passing = arena_create(0);
     struct sift_vertex *vertices = ARENA_ARRAY(arena, struct sift_vertex, 3 * prune->count);
@@ -70,7 +68,7 @@ static struct sift_set *set_of_pruned(struct arena *arena, const struct prune *p
         memcpy(vertices[i].position_m, from->position_m, sizeof from->position_m);
         memcpy(vertices[i].normal, from->normal, sizeof from->normal);
         memcpy(vertices[i].albedo, from->albedo, sizeof from->albedo);
-        vertices[i].normal[3] = (int16_t)(2 * species + (from->normal[3] > 0));
+        vertices[i].normal[3] = from->normal[3] > 0;
         memcpy(centers[i / 3], from->center_m, sizeof *centers);
     }
     struct sift_set *set =
@@ -81,8 +79,7 @@ static struct sift_set *set_of_pruned(struct arena *arena, const struct prune *p
 }
 
 struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *detail,
-                                     const struct prune *prune, const struct levels *levels,
-                                     uint32_t species)
+                                     const struct prune *prune, const struct levels *levels)
 {
     struct sift_plant *plant = ARENA_NEW(arena, struct sift_plant);
     plant->batches_count = detail->batches_count;
@@ -93,15 +90,14 @@ struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *d
         plant->bark[b] = detail->batches[b].kind == MATERIAL_BARK;
         size_t count = plant->bark[b] ? detail->levels_count : 1;
         for (size_t level = 0; level < count; level++)
-            plant->sets[b][level] =
-                set_of_range(arena, detail, &detail->batches[b], level, species);
+            plant->sets[b][level] = set_of_range(arena, detail, &detail->batches[b], level);
         for (uint32_t s = 0; s < levels->steps_count && plant->bark[b]; s++)
             plant->stout[b][s] =
                 detail_stout(detail, b, levels->step_bark[s], levels->step_stout[s]).indices_count /
                 3;
     }
     if (prune && prune->count > 0)
-        plant->pruned = set_of_pruned(arena, prune, species);
+        plant->pruned = set_of_pruned(arena, prune);
     return plant;
 }
 

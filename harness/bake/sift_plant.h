@@ -22,10 +22,9 @@ struct sift_plant {
 /* Textures cannot be sifted: false when a batch has one. */
 bool sift_plant_possible(const struct mesh *mesh);
 
-/* prune: NULL for none. species: normal.w is 2 * species, + 1 for leaves; at most 8192. */
+/* prune: NULL for none. normal.w is 1 for leaves, 0 for bark. */
 struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *detail,
-                                     const struct prune *prune, const struct levels *levels,
-                                     uint32_t species);
+                                     const struct prune *prune, const struct levels *levels);
 
 /* What one tree draws: its batches at a level, or a run of pruned elements over whole bark. At most
  * batches_count + 1 runs; returns how many. */

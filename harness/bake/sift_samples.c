@@ -115,9 +115,10 @@ static bool sphere_seen(const struct sift_work *work, const struct sift_tree *tr
     const struct instance *instance = tree->instance;
     float half_m = 0.5f * (tree->high_m - tree->low_m), p[3];
     float middle[3] = {instance->position_m[0],
-                       instance->position_m[1] + instance->scale * (tree->low_m + half_m),
+                       instance->position_m[1] +
+                           instance->scale * instance->stretch * (tree->low_m + half_m),
                        instance->position_m[2]};
-    float reach_m = instance->scale * (half_m + tree->radius_m);
+    float reach_m = instance_reach(instance) * (half_m + tree->radius_m);
     sift_project(work->screen, middle, p);
     if (!(p[2] > work->screen->near_m + 8 * reach_m))
         return true;
@@ -136,8 +137,8 @@ bool sift_tree_seen(const struct sift_work *work, const struct sift_tree *tree, 
     for (int corner = 0; corner < 8; corner++) {
         float radius = instance->scale * tree->radius_m, p[3], world[3];
         world[0] = instance->position_m[0] + (corner & 1 ? radius : -radius);
-        world[1] =
-            instance->position_m[1] + instance->scale * (corner & 2 ? tree->high_m : tree->low_m);
+        world[1] = instance->position_m[1] +
+                   instance->scale * instance->stretch * (corner & 2 ? tree->high_m : tree->low_m);
         world[2] = instance->position_m[2] + (corner & 4 ? radius : -radius);
         sift_project(screen, world, p);
         if (!(p[2] > screen->near_m))
@@ -166,6 +167,11 @@ void sift_tree_set(struct sift_work *work, const struct sift_tree *tree)
     work->turn[0] = c;
     work->turn[1] = s;
     work->scale = instance->scale;
+    work->height = instance->scale * instance->stretch;
+    work->reach = instance_reach(instance);
+    work->normal[0] = least(1, instance->stretch);
+    work->normal[1] = least(1, 1 / instance->stretch);
+    work->mean = tree->mean;
     work->within = tree->within;
     memcpy(work->place, instance->position_m, sizeof work->place);
     for (int i = 0; i < 3; i++) {
@@ -174,7 +180,7 @@ void sift_tree_set(struct sift_work *work, const struct sift_tree *tree)
         for (int j = 0; j < 3; j++)
             foot += (double)row[j] * instance->position_m[j];
         work->rows[i][0] = instance->scale * (row[0] * c - row[2] * s);
-        work->rows[i][1] = instance->scale * row[1];
+        work->rows[i][1] = work->height * row[1];
         work->rows[i][2] = instance->scale * (row[0] * s + row[2] * c);
         work->rows[i][3] = (float)foot;
     }
@@ -187,9 +193,9 @@ static void mark_block(const struct sift_work *work, const struct sift_set *set,
     const float *restrict x = set->x + at, *restrict y = set->y + at;
     const float *restrict z = set->z + at, *restrict radius = set->radius_m + at;
     const float(*m)[4] = work->rows;
-    float near_m = work->screen->near_m, focal = work->screen->focal_px * work->scale * growth;
+    float near_m = work->screen->near_m, focal = work->screen->focal_px * work->reach * growth;
     float right = (float)work->screen->width_px, low = work->low_row, high = work->high_row;
-    float behind_m = 0.999f * near_m, scale = work->scale * growth, shift_x = 1 - place[0],
+    float behind_m = 0.999f * near_m, scale = work->reach * growth, shift_x = 1 - place[0],
           shift_y = 1 - place[1];
     for (size_t i = 0; i < count; i++) {
         float w = m[2][0] * x[i] + m[2][1] * y[i] + m[2][2] * z[i] + m[2][3];
@@ -306,19 +312,21 @@ static void put_triangle(struct sift_work *work, const struct sift_vertex *corne
 {
     struct sift_vertex *out = work->out[work->stream] + 3 * work->filled[work->stream]++;
     float c = work->turn[0], s = work->turn[1], scale = work->scale;
+    float across = work->normal[0], along = work->normal[1];
     for (int i = 0; i < 3; i++) {
         const float *p = corners[i].position_m;
         const int16_t *n = corners[i].normal;
         float x = center[0] + size * (p[0] - center[0]), y = center[1] + size * (p[1] - center[1]);
         float z = center[2] + size * (p[2] - center[2]);
         out[i].position_m[0] = work->place[0] + scale * (x * c + z * s);
-        out[i].position_m[1] = work->place[1] + scale * y;
+        out[i].position_m[1] = work->place[1] + work->height * y;
         out[i].position_m[2] = work->place[2] + scale * (z * c - x * s);
-        float nx = (float)n[0] * c + (float)n[2] * s, nz = (float)n[2] * c - (float)n[0] * s;
+        float nx = across * ((float)n[0] * c + (float)n[2] * s);
+        float nz = across * ((float)n[2] * c - (float)n[0] * s);
         out[i].normal[0] = (int16_t)lrintf(least(most(nx, -32767), 32767));
-        out[i].normal[1] = n[1];
+        out[i].normal[1] = (int16_t)lrintf(along * (float)n[1]);
         out[i].normal[2] = (int16_t)lrintf(least(most(nz, -32767), 32767));
-        out[i].normal[3] = n[3];
+        out[i].normal[3] = (int16_t)(n[3] + work->mean);
         memcpy(out[i].albedo, corners[i].albedo, sizeof out[i].albedo);
         out[i].albedo[3] = (uint16_t)(growth > 1 ? 65535 / growth : 65535);
     }

@@ -4,7 +4,7 @@
 
 #include "triangles.glsl.h"
 
-enum { PROBES_MAX = 512, SPECIES_MAX = 64 };
+enum { PROBES_MAX = 512, SPECIES_MAX = 64, MEANS_MAX = 8 };
 
 static const char *const variant_defines[VARIANTS] = {"",
                                                       "LEAF 1",
@@ -56,7 +56,7 @@ static enum status prepare_kind(struct workspace *workspace, struct triangles *t
     if (prune)
         keep_probes(workspace->arena, kind, prune);
     if (triangles->sifted.sift) {
-        kind->sift = sift_plant_create(workspace->arena, detail, prune, &kind->levels, species);
+        kind->sift = sift_plant_create(workspace->arena, detail, prune, &kind->levels);
     } else {
         plant_gl_detail(workspace, detail, &kind->levels, triangles->placed_buffer, &kind->gpu);
         if (prune)
@@ -80,9 +80,9 @@ static enum status prepare_programs(struct workspace *workspace, struct triangle
     for (int v = 0; v < VARIANTS; v++) {
         if (!wanted[v])
             continue;
-        const char *defines = arena_printf(workspace->arena, "SPECIES %d\n%s%s",
-                                           triangles->kinds_count ? (int)triangles->kinds_count : 1,
-                                           fog ? "FOG 1\n" : "", variant_defines[v]);
+        const char *defines =
+            arena_printf(workspace->arena, "MEANS %d\n%s%s", triangles->means_count,
+                         fog ? "FOG 1\n" : "", variant_defines[v]);
         enum status status = gl_program(workspace->gl, "triangles", triangles_glsl, defines,
                                         &triangles->programs[v], workspace->error);
         if (status != STATUS_OK)
@@ -127,6 +127,48 @@ static void prepare_instances(struct workspace *workspace, struct triangles *tri
         GL_DYNAMIC_STORAGE_BIT);
 }
 
+/* Steps of stretch that a mean radiance is computed for, a species. Sifted, all species share one
+ * list of them; else each call has its own. */
+static void plan_means(struct triangles *triangles)
+{
+    const struct scene *scene = triangles->scene;
+    bool share = triangles->sifted.sift;
+    for (size_t i = 0; i < scene->instances_count; i++) {
+        const struct instance *tree = &scene->instances[i];
+        struct kind *kind = &triangles->kinds[tree->species];
+        bool first = !(kind->stretch[0] > 0);
+        kind->stretch[0] = first ? tree->stretch : fminf(kind->stretch[0], tree->stretch);
+        kind->stretch[1] = fmaxf(kind->stretch[1], tree->stretch);
+    }
+    for (size_t k = 0; k < triangles->kinds_count; k++) {
+        struct kind *kind = &triangles->kinds[k];
+        int room = share ? SPECIES_MAX / (int)triangles->kinds_count : MEANS_MAX;
+        kind->means_count = kind->stretch[1] <= kind->stretch[0] ? 1
+                            : room < MEANS_MAX                   ? room
+                                                                 : MEANS_MAX;
+        kind->first_mean = share ? triangles->means_count : 0;
+        triangles->means_count = share ? triangles->means_count + kind->means_count : MEANS_MAX;
+    }
+    if (triangles->means_count < 1)
+        triangles->means_count = 1;
+}
+
+int triangles_mean_of(const struct kind *kind, float stretch)
+{
+    if (kind->means_count < 2)
+        return 2 * kind->first_mean;
+    float along = logf(stretch / kind->stretch[0]) / logf(kind->stretch[1] / kind->stretch[0]);
+    return 2 * (kind->first_mean + (int)lrintf(along * (float)(kind->means_count - 1)));
+}
+
+float triangles_mean_stretch(const struct kind *kind, int step)
+{
+    if (kind->means_count < 2)
+        return kind->stretch[0];
+    return kind->stretch[0] *
+           powf(kind->stretch[1] / kind->stretch[0], (float)step / (float)(kind->means_count - 1));
+}
+
 /* Sifts where that pays and is possible. */
 static enum status prepare_sift(struct workspace *workspace, struct triangles *triangles)
 {
@@ -158,6 +200,7 @@ enum status triangles_prepare(struct workspace *workspace, const struct scene *s
     for (size_t i = 0; i < scene->instances_count; i++)
         triangles->kinds[scene->instances[i].species].drawn = true;
     enum status status = prepare_sift(workspace, triangles);
+    plan_means(triangles);
     if (!triangles->sifted.sift)
         triangles->placed_buffer = gl_buffer(
             workspace->gl, (GLsizeiptr)(request->trees_room * sizeof(struct plant_gl_placed)), NULL,

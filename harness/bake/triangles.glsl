@@ -10,7 +10,7 @@
 #endif
 #pragma stage vertex
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, 0 bark; SIFTED: (2 species + leaf) / 32767
+layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, 0 bark; SIFTED: (the tree's first mean + leaf) / 32767
 layout(location = 2) in vec4 albedo;  // w: SIFTED, 1 / growth; PRUNED, of bark, its width
 #ifdef TEXTURED
 layout(location = 3) in vec2 uv;
@@ -19,6 +19,7 @@ sample out vec2 texture_uv;
 #ifndef SIFTED
 layout(location = 5) in vec4 place;  // foot, m; scale
 layout(location = 6) in vec4 turn;   // cosine, sine; elements of the run, their growth
+layout(location = 8) in vec2 shape;  // stretch; the tree's first mean
 #endif
 // A rasteriser of small triangles spends much of its time on setting up what is interpolated: as little as may be.
 #ifdef LIT_AT_VERTICES
@@ -36,11 +37,7 @@ layout(location = 7) in vec2 run;  // its first element; the width from which on
 uniform float elements;            // of the plant
 uniform float taper;               // share of the run that is shrinking
 #endif
-#ifdef SIFTED
-uniform vec3 mean[2 * SPECIES];  // bark and leaves of each species, lit, over the plant
-#else
-uniform vec3 mean[2];
-#endif
+uniform vec3 mean[2 * MEANS];  // bark and leaves of each species, lit, over the plant, of each step of stretch
 uniform bool level_contrast;
 
 void main()
@@ -66,8 +63,8 @@ void main()
     vec3 world = position;
     vec3 n = normal.xyz;
 #else
-    vec3 world = place.xyz + place.w * rotate_y(local, turn.x, turn.y);
-    vec3 n = rotate_y(normal.xyz, turn.x, turn.y);
+    vec3 world = place.xyz + place.w * rotate_y(vec3(local.x, local.y * shape.x, local.z), turn.x, turn.y);
+    vec3 n = rotate_y(vec3(normal.x, normal.y / shape.x, normal.z), turn.x, turn.y);
 #endif
 #ifdef LIT_AT_VERTICES
     bool facing = dot(n, eye_m - world) >= 0.0;  // the same at every point of a flat triangle
@@ -75,7 +72,7 @@ void main()
     // One element stands for grow^2: the mean of so many varies grow times less (Cook et al. 2007, 3.3).
 #if defined(PRUNED)
     if (level_contrast)
-        lit = mix(mean[leaf ? 1 : 0], lit, min(1.0, 1.0 / grow));
+        lit = mix(mean[int(shape.y) + (leaf ? 1 : 0)], lit, min(1.0, 1.0 / grow));
 #elif defined(SIFTED)
     if (level_contrast && albedo.w < 1.0)
         lit = mix(mean[owner], lit, albedo.w);

@@ -50,6 +50,7 @@ static void place_trees(struct workspace *workspace, struct triangles *triangles
             struct levels_seen seen = seen_of(triangles, frame->view, focal_px, list, i);
             placed[i] = plant_place(&kind->levels, group - kind->first_group, instance, &seen,
                                     triangles_taper(triangles));
+            placed[i].mean = (float)triangles_mean_of(kind, instance->stretch);
         }
     gl->UnmapNamedBuffer(triangles->placed_buffer);
 }
@@ -59,11 +60,12 @@ static bool is_within(const struct triangles *triangles, const struct instance *
                       const struct view *view)
 {
     const struct levels *levels = &triangles->kinds[instance->species].levels;
-    struct cull_cylinder cylinder = {levels->low_m, levels->high_m, levels->radius_m};
+    struct cull_cylinder cylinder = {levels->low_m, levels->high_m, levels->radius_m, 0};
     return cull_cylinder_holds(&cylinder, instance, view->eye_m, 2 * view->near_m);
 }
 
-/* Mean radiances of bark and leaves of a species, for elements that stand for many. */
+/* Mean radiances of bark and leaves of a species, for elements that stand for many; of each step of
+ * stretch. */
 static void mean_uniforms(struct workspace *workspace, const struct triangles *triangles,
                           GLuint program, size_t k, const struct view *view)
 {
@@ -71,10 +73,13 @@ static void mean_uniforms(struct workspace *workspace, const struct triangles *t
     const struct kind *kind = &triangles->kinds[k];
     float mean[2][3];
     char name[32];
-    prune_mean_radiance(kind->probes, kind->probes_count, triangles->scene, workspace->effects,
-                        view, mean);
-    snprintf(name, sizeof name, "mean[%d]", triangles->sifted.sift ? (int)(2 * k) : 0);
-    gl->Uniform3fv(gl_uniform(gl, program, name), 2, mean[0]);
+    for (int step = 0; step < kind->means_count; step++) {
+        const struct prune_light light = {triangles->scene, view, workspace->effects,
+                                          triangles_mean_stretch(kind, step)};
+        prune_mean_radiance(kind->probes, kind->probes_count, &light, mean);
+        snprintf(name, sizeof name, "mean[%d]", 2 * (kind->first_mean + step));
+        gl->Uniform3fv(gl_uniform(gl, program, name), 2, mean[0]);
+    }
 }
 
 static void draw_call(struct workspace *workspace, const struct triangles *triangles,
@@ -154,7 +159,8 @@ static void draw_sifted(struct workspace *workspace, struct triangles *triangles
                                    .low_m = kind->levels.low_m,
                                    .high_m = kind->levels.high_m,
                                    .radius_m = kind->levels.radius_m,
-                                   .within = is_within(triangles, instance, view)};
+                                   .within = is_within(triangles, instance, view),
+                                   .mean = (int16_t)triangles_mean_of(kind, instance->stretch)};
         struct levels_seen seen = seen_of(triangles, view, focal_px, list, i);
         struct sift_part part = {.choice = choose(triangles, &kind->levels, seen.per_m),
                                  .run = run_of(triangles, at),

@@ -27,6 +27,8 @@ struct kind {
     struct sift_plant *sift; /* or sifted */
     uint32_t probes_count;
     struct prune_vertex *probes; /* some elements, for the plant's mean radiance */
+    float stretch[2];            /* of its trees, least and most; between them in equal ratios */
+    int first_mean, means_count; /* are the stretches of its means */
     uint32_t first_group, groups_count;
 };
 
@@ -44,6 +46,7 @@ struct triangles {
     size_t kinds_count;
     struct kind *kinds;
     struct cull_bound *bounds; /* kinds_count */
+    int means_count;           /* that the shaders hold: a bark's and a leaf's each */
     GLuint programs[VARIANTS]; /* those in use */
     uint8_t *runs;             /* instances_count: which run of elements; NULL: none is pruned */
     /* instanced drawing */
@@ -64,5 +67,10 @@ struct triangles {
 float triangles_taper(const struct triangles *triangles);
 /* VARIANT_... of the program that draws a batch. */
 int triangles_variant(const struct plant_gl_batch *batch);
+
+/* Where the shaders have the mean of the bark of a tree, of the nearest step of its stretch; its
+ * leaves' follows. */
+int triangles_mean_of(const struct kind *kind, float stretch);
+float triangles_mean_stretch(const struct kind *kind, int step);
 
 #endif

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "wall/gl.h"
 
-#define METHOD_ABI 2u
+#define METHOD_ABI 3u
 
 /* What a method is and which effects it models. The low bits are EFFECT_*. */
 enum {
@@ -65,6 +65,10 @@ struct method {          /* its name is its file's name, '-' written '_' in C */
     enum status (*draw)(struct workspace *workspace, void *state, const struct view *view,
                         struct target *target);
 };
+
+/* A method's `supported` where its light or its shapes are right in trees of their plant's ratio of
+ * height to width alone. */
+enum status method_needs_no_stretch(const struct scene *scene, const char **reason);
 
 /* The methods built in, sorted by name; generated from the file names in methods/. Ends with NULL.
  */

@@ -97,6 +97,14 @@ static enum status method_load(const char *path, const struct method **method, s
     return STATUS_OK;
 }
 
+enum status method_needs_no_stretch(const struct scene *scene, const char **reason)
+{
+    if (!scene_is_stretched(scene))
+        return STATUS_OK;
+    *reason = "its trees keep their plants' ratio of height to width; this scene has `stretch`";
+    return STATUS_UNSUPPORTED;
+}
+
 enum status method_find(const char *name, const struct method **method, struct error *error)
 {
     size_t length = strlen(name);

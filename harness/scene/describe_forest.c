@@ -38,6 +38,17 @@ static void describe_coloring(struct json *plant, struct plant_entry *entry)
         json_fail(plant, "coloring", "stands without images; allowed: together with images");
 }
 
+/* The least and the most of a factor that each tree draws; 1 where nothing is said. */
+static void describe_range(struct json *plant, const char *key, double minimum, double maximum,
+                           float range[2])
+{
+    range[0] = range[1] = 1;
+    json_vector(plant, key, range, 2, minimum, maximum);
+    if (range[0] > range[1])
+        json_fail(plant, key, "value is [%g, %g]; allowed: the smaller one first", (double)range[0],
+                  (double)range[1]);
+}
+
 static void describe_plant(struct arena *arena, struct json *plant, struct plant_entry *entry,
                            const char *scene_path)
 {
@@ -60,11 +71,8 @@ static void describe_plant(struct arena *arena, struct json *plant, struct plant
                                             : json_text(plant, "images", "");
     entry->name = json_text(plant, "name", fallback);
     entry->weight = (float)json_number(plant, "weight", 1, 0, 1e6);
-    entry->scale[0] = entry->scale[1] = 1;
-    json_vector(plant, "scale", entry->scale, 2, 0.001, 1000);
-    if (entry->scale[0] > entry->scale[1])
-        json_fail(plant, "scale", "value is [%g, %g]; allowed: the smaller one first",
-                  (double)entry->scale[0], (double)entry->scale[1]);
+    describe_range(plant, "scale", 0.001, 1000, entry->scale);
+    describe_range(plant, "stretch", STRETCH_MIN, STRETCH_MAX, entry->stretch);
     double reach_m = entry->import.height_m > 0 ? 1.5 * entry->import.height_m : 40;
     entry->reach_m = (float)json_number(plant, "reach_m", reach_m, 0.01, 10000);
 }

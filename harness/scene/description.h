@@ -8,6 +8,10 @@
 
 enum { TREES_MAX = 4000000, SIDE_PX_MAX = 16384, TERRAIN_SAMPLES_MAX = 4097 };
 
+/* Beyond a factor of eight a tree is a blade or a disc, and a float's normals are short of bits. */
+#define STRETCH_MIN 0.125
+#define STRETCH_MAX 8.0
+
 struct plant_entry {
     const char *name;
     const char *generator, *options; /* a generated plant; options may be NULL */
@@ -15,8 +19,8 @@ struct plant_entry {
     const char *images;              /* or a folder of pictures; two of the three are NULL */
     struct plant_import import;
     struct coloring_request coloring; /* of images; the box is the folder's */
-    float weight, scale[2];
-    float reach_m; /* no vertex is farther from the foot, at scale 1 */
+    float weight, scale[2], stretch[2];
+    float reach_m; /* no vertex is farther from the foot, at scale 1, stretch 1 */
 };
 
 enum placement_kind { PLACEMENT_GRID, PLACEMENT_POISSON, PLACEMENT_FILE };

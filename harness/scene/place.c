@@ -45,6 +45,9 @@ void place_tree(const struct description *description, uint64_t seed, size_t ind
     instance->scale = scale[0] + (float)random_double(&random) * (scale[1] - scale[0]);
     double turn = random_double(&random);
     instance->rotation_rad = description->placement.rotate ? (float)(turn * TWO_PI) : 0;
+    /* Last, so that the other draws are the same with and without it. */
+    const float *stretch = description->plants[instance->species].stretch;
+    instance->stretch = stretch[0] + (float)random_double(&random) * (stretch[1] - stretch[0]);
 }
 
 /* The square cut into quads_side x quads_side quads, one tree at most in each. */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS_MAX = 5 };
+enum { COLUMNS_MAX = 6 };
 static const double PLACE_MAX_M = 1e6;
 static const double DEGREE = 0.017453292519943295;
 
@@ -19,7 +19,8 @@ struct row {
     size_t columns_count;
 };
 
-static const char *const COLUMN_NAMES[COLUMNS_MAX] = {"x", "z", "rotation_deg", "scale", "species"};
+static const char *const COLUMN_NAMES[COLUMNS_MAX] = {"x",     "z",       "rotation_deg",
+                                                      "scale", "species", "stretch"};
 
 static enum status row_number(const struct row *row, size_t column, double minimum, double maximum,
                               double *value, struct error *error)
@@ -43,8 +44,8 @@ static enum status row_split(struct row *row, char *line, struct error *error)
          column = strtok_r(NULL, " \t\r,;", &rest)) {
         if (row->columns_count == COLUMNS_MAX)
             return error_set(error, STATUS_INVALID,
-                             "%s:%zu: column 6 is '%s'; allowed: x z [rotation_deg [scale "
-                             "[species]]]",
+                             "%s:%zu: column 7 is '%s'; allowed: x z [rotation_deg [scale "
+                             "[species [stretch]]]]",
                              row->path, row->line, column);
         row->columns[row->columns_count++] = column;
     }
@@ -91,8 +92,15 @@ static enum status row_place(const struct row *row, const struct description *de
             return STATUS_INVALID;
         instance->scale = (float)value;
     }
-    return row->columns_count > 4 ? row_species(row, description, &instance->species, error)
-                                  : STATUS_OK;
+    if (row->columns_count > 4 &&
+        row_species(row, description, &instance->species, error) != STATUS_OK)
+        return STATUS_INVALID;
+    if (row->columns_count > 5) {
+        if (row_number(row, 5, STRETCH_MIN, STRETCH_MAX, &value, error) != STATUS_OK)
+            return STATUS_INVALID;
+        instance->stretch = (float)value;
+    }
+    return STATUS_OK;
 }
 
 /* Half the side of the smallest centred square that holds the trees. */

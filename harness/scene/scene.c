@@ -109,7 +109,7 @@ static enum status forest_build(struct arena *arena, const struct description *d
         float *position_m = scene->instances[k].position_m;
         position_m[1] = terrain_height(&scene->terrain, position_m[0], position_m[2]);
         const struct instance *tree = &scene->instances[k];
-        float reach_m = tree->scale * description->plants[tree->species].reach_m;
+        float reach_m = instance_reach(tree) * description->plants[tree->species].reach_m;
         scene->tree_reach_m = fmaxf(scene->tree_reach_m, reach_m);
     }
     return species_build(arena, description, scene, error);
@@ -166,6 +166,33 @@ static uint64_t hash_light(uint64_t hash, const struct scene *scene)
     return scene->fog.density_per_m > 0 ? hash_floats(hash, scene->fog.color, 3) : hash;
 }
 
+bool scene_is_stretched(const struct scene *scene)
+{
+    for (size_t k = 0; k < scene->instances_count; k++)
+        if (scene->instances[k].stretch != 1)
+            return true;
+    return false;
+}
+
+/* The trees as they were before one could be stretched, so that a forest in which none is keeps its
+ * hash and what was traced of it; then the stretches, where there are any. */
+static uint64_t hash_trees(uint64_t hash, const struct scene *scene)
+{
+    enum { BEFORE = offsetof(struct instance, stretch) };
+    struct arena *scratch = arena_create(0);
+    char(*trees)[BEFORE] = arena_alloc(scratch, scene->instances_count, sizeof *trees);
+    float *stretches = ARENA_ARRAY(scratch, float, scene->instances_count);
+    for (size_t k = 0; k < scene->instances_count; k++) {
+        memcpy(trees[k], &scene->instances[k], BEFORE);
+        stretches[k] = scene->instances[k].stretch;
+    }
+    hash = hash_bytes(hash, trees, scene->instances_count * sizeof *trees);
+    if (scene_is_stretched(scene))
+        hash = hash_bytes(hash, stretches, scene->instances_count * sizeof *stretches);
+    arena_destroy(scratch);
+    return hash;
+}
+
 /* From what the pictures are made of, not from the file's text: names, docs and views do not count.
  */
 static enum status hash_build(struct scene *scene, struct error *error)
@@ -187,8 +214,7 @@ static enum status hash_build(struct scene *scene, struct error *error)
             return error_context(error, "%s: plant %s", scene->path, scene->species[k].name);
         hash = hash_u64(hash, plant);
     }
-    hash = hash_bytes(hash, scene->instances, scene->instances_count * sizeof *scene->instances);
-    scene->hash = hash_light(hash, scene);
+    scene->hash = hash_light(hash_trees(hash, scene), scene);
     return STATUS_OK;
 }
 

@@ -21,12 +21,15 @@ struct species {
     float scale_min, scale_max; /* uniform */
 };
 
-/* One tree. World position = R_y(rotation) * scale * vertex + position. */
+/* One tree. World position = R_y(rotation) * scale * diag(1, stretch, 1) * vertex + position. A
+ * normal's direction is R_y(rotation) * diag(1, 1 / stretch, 1) * normal: what a vector transforms
+ * by, transposed and inverted, so that it stays perpendicular to the surface. */
 struct instance {
     float position_m[3];
     float rotation_rad; /* about +y: x' = x cos + z sin, z' = -x sin + z cos */
-    float scale;
+    float scale;        /* of width and height */
     uint32_t species;
+    float stretch; /* height over width, > 0 */
 };
 
 /* A regular height field centred on the origin, or nothing (samples_x == 0). Quad (i, j) is cut
@@ -179,6 +182,15 @@ struct mesh *terrain_mesh(struct arena *arena, const struct terrain *terrain);
 
 /* Model matrix of an instance. */
 void instance_matrix(const struct instance *instance, mat4 matrix);
+
+/* How far a metre of the plant reaches in the tree, at most: its larger scale. */
+static inline float instance_reach(const struct instance *instance)
+{
+    return instance->scale * fmaxf(1, instance->stretch);
+}
+
+/* Whether some tree has another ratio of height to width than its plant. */
+bool scene_is_stretched(const struct scene *scene);
 
 /* True when the sphere may touch the view frustum. */
 bool view_sees_sphere(const struct view *view, const float center_m[3], float radius_m);

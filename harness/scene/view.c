@@ -175,7 +175,7 @@ void instance_matrix(const struct instance *instance, mat4 matrix)
     memset(matrix, 0, sizeof(mat4));
     matrix[0][0] = c;
     matrix[0][2] = -s;
-    matrix[1][1] = instance->scale;
+    matrix[1][1] = instance->scale * instance->stretch;
     matrix[2][0] = s;
     matrix[2][2] = c;
     memcpy(matrix[3], instance->position_m, sizeof instance->position_m);

@@ -30,6 +30,7 @@ struct surface {
 /* What a hit needs to know of its instance. */
 struct placement {
     float turn_cos, turn_sin;
+    float rise; /* of normals, against their width: 1 / stretch */
     uint32_t first_surface;
 };
 

@@ -102,15 +102,14 @@ static enum status add_mesh(struct arena *arena, struct traced_scene *traced,
 }
 
 static void add_instance(struct traced_scene *traced, size_t number, mat4 matrix, uint32_t mesh,
-                         uint32_t first_surface, float rotation_rad)
+                         const struct placement *placement)
 {
     float to_world[12];
     for (int column = 0; column < 4; column++)
         for (int row = 0; row < 3; row++)
             to_world[3 * column + row] = matrix[column][row];
     embree_add_instance(traced->embree, mesh, to_world);
-    traced->placements[number] =
-        (struct placement){cosf(rotation_rad), sinf(rotation_rad), first_surface};
+    traced->placements[number] = *placement;
 }
 
 /* A mesh that is traced: its number in Embree and its surfaces. */
@@ -182,13 +181,16 @@ enum status traced_scene_build(struct arena *arena, const struct scene *scene, i
         const struct traced_mesh *mesh = &meshes[instance->species];
         mat4 matrix = GLM_MAT4_IDENTITY_INIT;
         instance_matrix(instance, matrix);
-        add_instance(traced, i, matrix, mesh->number, mesh->first_surface, instance->rotation_rad);
+        const struct placement placement = {cosf(instance->rotation_rad),
+                                            sinf(instance->rotation_rad), 1 / instance->stretch,
+                                            mesh->first_surface};
+        add_instance(traced, i, matrix, mesh->number, &placement);
     }
     const struct traced_mesh *terrain = &meshes[scene->species_count];
     if (terrain->mesh) {
         mat4 matrix = GLM_MAT4_IDENTITY_INIT;
-        add_instance(traced, scene->instances_count, matrix, terrain->number,
-                     terrain->first_surface, 0);
+        const struct placement placement = {1, 0, 1, terrain->first_surface};
+        add_instance(traced, scene->instances_count, matrix, terrain->number, &placement);
     }
     return embree_commit(traced->embree, error);
 }

@@ -74,7 +74,7 @@ static void queue_trace(const struct picture *picture, struct tile_work *work,
  */
 struct sights {
     const struct surface *surface[EMBREE_LANES]; /* NULL: the sky */
-    float turn_cos[EMBREE_LANES], turn_sin[EMBREE_LANES];
+    float turn_cos[EMBREE_LANES], turn_sin[EMBREE_LANES], rise[EMBREE_LANES];
     float point[3][EMBREE_LANES], geometric[3][EMBREE_LANES], normal[3][EMBREE_LANES];
     float offset_m[EMBREE_LANES];   /* more than the error of point */
     float sun_facing[EMBREE_LANES]; /* normal . sun */
@@ -111,6 +111,7 @@ static void sights_gather(const struct traced_scene *traced, const struct embree
         sights->surface[lane] = NULL;
         sights->turn_cos[lane] = 1;
         sights->turn_sin[lane] = 0;
+        sights->rise[lane] = 1;
         if (lane >= lanes || packet->geometry[lane] == EMBREE_NONE)
             continue;
         const struct placement *placement = &traced->placements[packet->instance[lane]];
@@ -119,6 +120,7 @@ static void sights_gather(const struct traced_scene *traced, const struct embree
         sights->surface[lane] = surface;
         sights->turn_cos[lane] = placement->turn_cos;
         sights->turn_sin[lane] = placement->turn_sin;
+        sights->rise[lane] = placement->rise;
         if (surface->tints)
             __builtin_prefetch(surface->tints[packet->primitive[lane]]);
         if (!surface->flat)
@@ -127,14 +129,14 @@ static void sights_gather(const struct traced_scene *traced, const struct embree
     }
 }
 
-/* Turns from the plant's space into the world's and makes unit, all lanes; a zero vector becomes
- * minus toward. */
+/* Normals from the plant's space into the world's, unit, all lanes; a zero vector becomes minus
+ * toward. */
 static void turn_lanes(const struct sights *sights, const float from[3][EMBREE_LANES],
                        const float toward[3][EMBREE_LANES], float to[3][EMBREE_LANES])
 {
     for (int i = 0; i < EMBREE_LANES; i++) {
         float x = from[0][i] * sights->turn_cos[i] + from[2][i] * sights->turn_sin[i];
-        float y = from[1][i];
+        float y = from[1][i] * sights->rise[i];
         float z = from[2][i] * sights->turn_cos[i] - from[0][i] * sights->turn_sin[i];
         float square = x * x + y * y + z * z, inverse = 1 / sqrtf(square);
         bool known = square > 0 && inverse < FLT_MAX;

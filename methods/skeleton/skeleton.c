@@ -16,8 +16,8 @@ static const struct option table[] = {
 };
 /* clang-format on */
 
-/* A species: the size of its double cone at scale 1, its colour, and where its trees begin in the
- * buffer.
+/* A species: the size of its double cone at scale and stretch 1, its colour, and where its trees
+ * begin in the buffer.
  */
 struct kind {
     float radius_m, height_m, albedo[3];
@@ -49,12 +49,12 @@ static void mean_albedo(const struct mesh *mesh, float albedo[3])
     }
 }
 
-/* The trees' feet and scales, species by species, into one buffer. */
+/* The trees' feet, their scales of width and of height, species by species, into one buffer. */
 static void upload_trees(struct workspace *workspace, struct state *state)
 {
     const struct scene *scene = state->scene;
     struct gl *gl = workspace->gl;
-    float(*feet)[4] = arena_alloc(workspace->arena, scene->instances_count, sizeof *feet);
+    float(*feet)[5] = arena_alloc(workspace->arena, scene->instances_count, sizeof *feet);
     size_t filled = 0;
     for (size_t k = 0; k < scene->species_count; k++) {
         state->kinds[k].first = filled;
@@ -64,16 +64,19 @@ static void upload_trees(struct workspace *workspace, struct state *state)
                 continue;
             for (int axis = 0; axis < 3; axis++)
                 feet[filled][axis] = tree->position_m[axis];
-            feet[filled++][3] = tree->scale;
+            feet[filled][3] = tree->scale;
+            feet[filled++][4] = tree->scale * tree->stretch;
         }
         state->kinds[k].count = filled - state->kinds[k].first;
     }
     state->feet = gl_buffer(gl, (GLsizeiptr)(filled * sizeof *feet), feet, 0);
     state->cones = gl_vertex_array(gl);
-    gl->VertexArrayAttribFormat(state->cones, 0, 4, GL_FLOAT, GL_FALSE, 0);
-    gl->VertexArrayAttribBinding(state->cones, 0, 0);
+    for (GLuint k = 0; k < 2; k++) { /* 0: a foot, 1: its scales, from 12 bytes on */
+        gl->VertexArrayAttribFormat(state->cones, k, k ? 2 : 3, GL_FLOAT, GL_FALSE, 12 * k);
+        gl->VertexArrayAttribBinding(state->cones, k, 0);
+        gl->EnableVertexArrayAttrib(state->cones, k);
+    }
     gl->VertexArrayBindingDivisor(state->cones, 0, 1);
-    gl->EnableVertexArrayAttrib(state->cones, 0);
 }
 
 /* lod=low is cheap, high is the method's best, auto is its own choice. */
@@ -128,7 +131,7 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
         gl->Uniform2f(gl_uniform(gl, state->program, "size_m"), kind->radius_m, kind->height_m);
         gl->Uniform3fv(gl_uniform(gl, state->program, "albedo"), 1, kind->albedo);
         gl->VertexArrayVertexBuffer(state->cones, 0, state->feet,
-                                    (GLintptr)(kind->first * sizeof(float[4])), sizeof(float[4]));
+                                    (GLintptr)(kind->first * sizeof(float[5])), sizeof(float[5]));
         gl_draw_arrays(gl, GL_TRIANGLES, 0, 6 * state->sides, (GLsizei)kind->count);
     }
     return gl_check(gl, "skeleton", workspace->error);

@@ -1,8 +1,9 @@
 // Double cones: gl_VertexID counts the corners of 2 SIDES triangles about the trunk, upper and lower by turns; an
 // instance is a tree.
 #pragma stage vertex
-layout(location = 0) in vec4 foot;  // m; scale
-uniform vec2 size_m;                // radius and height at scale 1
+layout(location = 0) in vec3 foot;    // m
+layout(location = 1) in vec2 scales;  // of width and height
+uniform vec2 size_m;                  // radius and height at scale and stretch 1
 out vec3 position_m;
 out vec3 normal;
 
@@ -13,10 +14,11 @@ void main()
     float turn = float(gl_VertexID / 6) + (corner == 0 ? 0.5 : float((corner == 2) == upper));
     float angle = 6.283185307 * turn / float(SIDES);
     vec3 around = vec3(sin(angle), 0.0, cos(angle));
-    vec3 place = vec3(0.0, corner > 0 ? 0.5 * size_m.y : upper ? size_m.y : 0.0, 0.0);
-    place += corner > 0 ? size_m.x * around : vec3(0.0);
-    position_m = foot.xyz + foot.w * place;
-    normal = 0.5 * size_m.y * around + vec3(0.0, upper ? size_m.x : -size_m.x, 0.0);
+    vec2 size = scales * size_m;
+    vec3 place = vec3(0.0, corner > 0 ? 0.5 * size.y : upper ? size.y : 0.0, 0.0);
+    place += corner > 0 ? size.x * around : vec3(0.0);
+    position_m = foot + place;
+    normal = 0.5 * size.y * around + vec3(0.0, upper ? size.x : -size.x, 0.0);
     gl_Position = view_projection * vec4(position_m, 1.0);
 }
 

@@ -22,7 +22,7 @@ static void test_skeleton__a_far_tree_covers_a_double_cones_rhombus(void **unuse
     assert_int_equal(plant_mesh(scene->species[0].plant, &mesh, &error), 0);
 
     const struct instance *tree = &scene->instances[0];
-    const double height_m = tree->scale * mesh->maximum_m[1], distance_m = 150;
+    const double height_m = tree->scale * tree->stretch * mesh->maximum_m[1], distance_m = 150;
     const double radius_m = tree->scale * mesh->radius_m;
     const float x = tree->position_m[0], z = tree->position_m[2];
     const float middle_m = tree->position_m[1] + 0.5f * (float)height_m;

@@ -1,0 +1,164 @@
+/* Trees that are higher or lower than their plants: balls become ellipsoids, whose normals and
+ * light are known in closed form. */
+#include "pictures.h"
+#include "slices_meshes.h"
+
+enum { SIDE_PX = 64 };
+static const float albedo = 0.5f, radius_m = 3, turn_rad = 0.7f;
+static const float middle_m[3] = {1, 4, -2};
+
+/* What a tree's normals may be: M^-T n; wrongly, stretched as vertices are, M n, or left as the
+ * plant's. */
+enum normals { NORMALS_RIGHT, NORMALS_AS_VERTICES, NORMALS_OF_PLANT, NORMALS_COUNT };
+
+/* A ball of bark, stretched, under a sun alone. */
+static struct scene *ball_scene(struct arena *arena, float stretch)
+{
+    struct scene *scene = tree_scene(arena, shape_ball(arena), 1, 0.9f);
+    struct instance *tree = &scene->instances[0];
+    memcpy(tree->position_m, middle_m, sizeof middle_m);
+    tree->rotation_rad = turn_rad;
+    tree->scale = radius_m;
+    tree->stretch = stretch;
+    scene->tree_reach_m = 8;
+    scene->effects = 0;
+    for (int i = 0; i < 3; i++)
+        scene->sun.radiance[i] = 1;
+    return scene;
+}
+
+static struct view ball_view(const struct scene *scene, float elevation_rad)
+{
+    const float away_m = 40;
+    struct scene zoomed = *scene;
+    struct view view;
+    float reach_m = radius_m * fmaxf(1, scene->instances[0].stretch);
+    zoomed.width_px = zoomed.height_px = SIDE_PX;
+    zoomed.camera.fov_y_rad = 2 * atanf(1.1f * reach_m / away_m);
+    float eye_m[3] = {middle_m[0] + away_m * cosf(elevation_rad) * 0.6f,
+                      middle_m[1] + away_m * sinf(elevation_rad),
+                      middle_m[2] + away_m * cosf(elevation_rad) * 0.8f};
+    view_look_at(&zoomed, eye_m, middle_m, &view);
+    return view;
+}
+
+static double unit(double v[3])
+{
+    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+    return length;
+}
+
+/* Cosines between the sun and what each kind of normal is where a pixel's ray meets the ellipsoid;
+ * false beside it and near its rim. A turned ball is the same ball: its axes are the world's. */
+static bool ellipsoid_light(const struct view *view, int x, int y, float stretch,
+                            double light[NORMALS_COUNT])
+{
+    const double factors[NORMALS_COUNT] = {1 / (double)stretch, (double)stretch, 1};
+    float ray[3];
+    double o[3], d[3], a = 0, b = 0, c = -1, facing = 0;
+    view_ray(view, (float)x + 0.5f, (float)y + 0.5f, ray);
+    for (int i = 0; i < 3; i++) {
+        double size_m = i == 1 ? radius_m * stretch : radius_m;
+        o[i] = (view->eye_m[i] - middle_m[i]) / size_m;
+        d[i] = ray[i] / size_m;
+        a += d[i] * d[i];
+        b += o[i] * d[i];
+        c += o[i] * o[i];
+    }
+    if (b * b - a * c <= 0)
+        return false;
+    double at = (-b - sqrt(b * b - a * c)) / a;
+    for (int k = 0; k < NORMALS_COUNT; k++) {
+        double n[3] = {o[0] + at * d[0], (o[1] + at * d[1]) * factors[k], o[2] + at * d[2]};
+        unit(n);
+        light[k] = 0;
+        for (int i = 0; i < 3; i++) {
+            light[k] += n[i] * view->sun_direction[i];
+            facing -= k == NORMALS_RIGHT ? n[i] * ray[i] : 0;
+        }
+        light[k] = fmax(0, light[k]);
+    }
+    return facing > 0.4;
+}
+
+/* Root mean squares of what a picture differs from the ellipsoid with each kind of normals. */
+static void claim_ellipsoid(const char *what, const struct view *view, float stretch,
+                            const float *rgba, double most)
+{
+    double sums[NORMALS_COUNT] = {0}, errors[NORMALS_COUNT], count = 0, light[NORMALS_COUNT];
+    for (int y = 0; y < SIDE_PX; y++)
+        for (int x = 0; x < SIDE_PX; x++) {
+            if (!ellipsoid_light(view, x, y, stretch, light))
+                continue;
+            count++;
+            for (int k = 0; k < NORMALS_COUNT; k++)
+                sums[k] += pow(rgba[4 * (y * SIDE_PX + x)] - albedo * light[k], 2);
+        }
+    assert_true(count > 400);
+    for (int k = 0; k < NORMALS_COUNT; k++)
+        errors[k] = sqrt(sums[k] / count);
+    if (getenv("STRETCH_SHOW"))
+        print_message("%s %g: %.4f %.4f %.4f\n", what, (double)stretch, errors[0], errors[1],
+                      errors[2]);
+    if (!(errors[NORMALS_RIGHT] <= most))
+        fail_msg("%s, stretch %g: differs by %.4f; allowed: %g", what, (double)stretch,
+                 errors[NORMALS_RIGHT], most);
+    for (int k = 1; k < NORMALS_COUNT; k++)
+        if (stretch != 1 && !(3 * errors[NORMALS_RIGHT] < errors[k]))
+            fail_msg("%s, stretch %g: %.4f from the right normals, %.4f from wrong ones", what,
+                     (double)stretch, errors[NORMALS_RIGHT], errors[k]);
+}
+
+static const float stretches[] = {2, 0.5f, 1};
+static const float elevations_rad[] = {0.1f, 0.7f};
+
+static void test_reference__a_stretched_ball_is_lit_as_its_ellipsoid(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 6; k++) {
+        struct arena *arena = arena_create(0);
+        struct scene *scene = ball_scene(arena, stretches[k / 2]);
+        struct view view = ball_view(scene, elevations_rad[k % 2]);
+        struct frame *frame = tree_reference(arena, scene, 0, &view);
+        claim_ellipsoid("reference", &view, stretches[k / 2], frame->rgba, 0.01);
+        arena_destroy(arena);
+    }
+}
+
+/* How a method draws it, and what its own kind of picture differs from the closed form by. */
+static const struct {
+    const char *method, *options;
+    double most;
+} drawn[] = {
+    {"polygons", "sift=1", 0.01},
+    {"polygons", "sift=0", 0.01},
+};
+
+static void test_methods__a_stretched_ball_is_lit_as_its_ellipsoid(void **state)
+{
+    (void)state;
+    for (size_t m = 0; m < sizeof drawn / sizeof drawn[0]; m++)
+        for (int k = 0; k < 6; k++) {
+            struct arena *arena = arena_create(0);
+            struct scene *scene = ball_scene(arena, stretches[k / 2]);
+            struct view view = ball_view(scene, elevations_rad[k % 2]);
+            struct setting setting = {.method = drawn[m].method,
+                                      .options = drawn[m].options,
+                                      .lod = LOD_HIGH,
+                                      .format = TARGET_RGBA32F};
+            struct picture picture = picture_draw(arena, scene, &view, &setting);
+            claim_ellipsoid(drawn[m].method, &view, stretches[k / 2], picture.rgba, drawn[m].most);
+            arena_destroy(arena);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reference__a_stretched_ball_is_lit_as_its_ellipsoid),
+        cmocka_unit_test(test_methods__a_stretched_ball_is_lit_as_its_ellipsoid),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
