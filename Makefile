@@ -60,7 +60,8 @@ SOURCES := $(filter-out $(WALL_SKIP) $(MARCH_SKIP) harness/cli/treeline.c,$(sort
 GENERATED_C := $(GEN)/methods_builtin.c $(GEN)/gl_load.c $(GEN)/gl_backends.c
 GENERATED_H := $(GEN)/gl_functions.inc $(GEN)/build_facts.h \
     $(patsubst methods/%.glsl,$(GEN)/%.glsl.h,$(wildcard methods/*.glsl)) \
-    $(patsubst harness/bake/%.glsl,$(GEN)/%.glsl.h,$(wildcard harness/bake/*.glsl))
+    $(patsubst harness/bake/%.glsl,$(GEN)/%.glsl.h,$(wildcard harness/bake/*.glsl)) \
+    $(patsubst harness/calibrate/%.glsl,$(GEN)/%.glsl.h,$(wildcard harness/calibrate/*.glsl))
 OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o) $(GENERATED_C:%.c=%.o)
 ARCHIVE := $(BUILD)/libtreeline.a
 BINARY := $(BUILD)/treeline
@@ -153,6 +154,9 @@ $(GEN)/%.glsl.h: methods/%.glsl $(GLSL_TO_C)
 	@mkdir -p $(@D)
 	@$(GLSL_TO_C) $< > $@
 $(GEN)/%.glsl.h: harness/bake/%.glsl $(GLSL_TO_C)
+	@mkdir -p $(@D)
+	@$(GLSL_TO_C) $< > $@
+$(GEN)/%.glsl.h: harness/calibrate/%.glsl $(GLSL_TO_C)
 	@mkdir -p $(@D)
 	@$(GLSL_TO_C) $< > $@
 

@@ -48,10 +48,16 @@ static int resolution_of(const struct options *options, enum lod lod)
     return options->resolution / divisor < 8 ? 8 : options->resolution / divisor;
 }
 
+/* Pictures in a fragment. */
+static int mixed_of(const struct options *options)
+{
+    return options->pick == 0 ? 1 : options->layout == VIEWS_CIRCLE ? 2 : 3;
+}
+
 static enum status programs(struct workspace *workspace, const struct options *options,
                             struct state *state)
 {
-    int views = options->pick == 0 ? 1 : options->layout == VIEWS_CIRCLE ? 2 : 3;
+    int views = mixed_of(options);
     state->far_corners = views == 1 ? 3 : 4;
     const char *far = arena_printf(workspace->arena, "LAYOUT %d\nVIEWS %d\nCORNERS %d\n",
                                    options->layout, views, state->far_corners);
@@ -82,7 +88,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     };
     state->side = (int)atlas.side;
     struct impostor_request request = {
-        .atlas = atlas, .quads_each = 1, .near_radii = options->near};
+        .atlas = atlas, .quads_each = 1, .mixed = mixed_of(options), .near_radii = options->near};
     enum status status = impostor_prepare(workspace, scene, &request, &state->impostor);
     return status == STATUS_OK ? programs(workspace, options, state) : status;
 }

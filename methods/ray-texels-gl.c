@@ -4,6 +4,7 @@
 #include "bake/backdrop.h"
 #include "bake/cull.h"
 #include "bake/march_tree.h"
+#include "bake/tally.h"
 #include "bake/tiles.h"
 #include "bake/voxels.h"
 #include "method/method.h"
@@ -54,8 +55,8 @@ struct state {
     struct tiles *tiles;
     struct tiles_rect *rects; /* of the trees in view, in their order */
     struct texels *texels;
-    struct march_tree *trees; /* one an instance */
-    GLuint program, vertices, framebuffer;
+    struct march_tree *trees;                        /* one an instance */
+    GLuint program, counting, vertices, framebuffer; /* counting: made when it is asked for */
     GLuint buffers[BUFFERS], textures[BUFFERS];
 };
 
@@ -147,6 +148,19 @@ static enum status prepare_volumes(struct workspace *workspace, struct state *st
     return STATUS_OK;
 }
 
+static enum status make_program(struct workspace *workspace, const struct state *state, bool counts,
+                                GLuint *program)
+{
+    struct arena *scratch = arena_create(0);
+    const char *defines =
+        arena_printf(scratch, "FIRST 256u\nPROBES 2\n%s%s",
+                     state->options.model ? "ISOTROPIC 1\n" : "", counts ? "COUNT 1\n" : "");
+    enum status status = gl_program(workspace->gl, "ray-texels-gl", ray_texels_gl_glsl, defines,
+                                    program, workspace->error);
+    arena_destroy(scratch);
+    return status;
+}
+
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
                            const void *values, void **result)
 {
@@ -162,16 +176,13 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     march_trees_fill(scene, state->trees);
     state->vertices = gl_vertex_array(gl);
     state->framebuffer = gl_framebuffer(gl);
-    const char *defines =
-        state->options.model ? "FIRST 256u\nPROBES 2\nISOTROPIC 1\n" : "FIRST 256u\nPROBES 2\n";
     enum status status = backdrop_prepare(workspace, scene, &state->backdrop);
     if (!status)
         status = prepare_volumes(workspace, state);
     if (!status)
         status = prepare_buffers(workspace, state);
     if (!status)
-        status = gl_program(gl, "ray-texels-gl", ray_texels_gl_glsl, defines, &state->program,
-                            workspace->error);
+        status = make_program(workspace, state, false, &state->program);
     return status ? status : gl_check(gl, "ray-texels-gl", workspace->error);
 }
 
@@ -291,11 +302,10 @@ static bool upload_trees(struct workspace *workspace, struct state *state, const
     return true;
 }
 
-static void set_uniforms(struct workspace *workspace, const struct state *state,
+static void set_uniforms(struct workspace *workspace, const struct state *state, GLuint program,
                          const struct view *view)
 {
     struct gl *gl = workspace->gl;
-    const GLuint program = state->program;
     const float focal = cull_focal_px(view);
     const float width = (float)view->width_px, height = (float)view->height_px;
     float axes[9];
@@ -335,18 +345,18 @@ static void draw_row(struct gl *gl, const struct tiles *tiles, int row, int heig
 }
 
 /* The target's colour without its depth, which the shader reads. */
-static void draw_trees(struct workspace *workspace, const struct state *state,
+static void draw_trees(struct workspace *workspace, const struct state *state, GLuint program,
                        const struct view *view, const struct target *target)
 {
     struct gl *gl = workspace->gl;
     gl->NamedFramebufferTexture(state->framebuffer, GL_COLOR_ATTACHMENT0, target->color, 0);
     gl->BindFramebuffer(GL_FRAMEBUFFER, state->framebuffer);
-    gl->UseProgram(state->program);
+    gl->UseProgram(program);
     gl->BindVertexArray(state->vertices);
     for (GLuint i = 0; i < BUFFERS; i++)
         gl->BindTextureUnit(i, state->textures[i]);
     gl->BindTextureUnit(DEPTH, target->depth);
-    set_uniforms(workspace, state, view);
+    set_uniforms(workspace, state, program, view);
     gl->Disable(GL_DEPTH_TEST);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -363,6 +373,22 @@ static void draw_trees(struct workspace *workspace, const struct state *state,
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
 }
 
+/* The same with the lookups counted, a counter a row of pixels. */
+static enum status count_trees(struct workspace *workspace, struct state *state,
+                               const struct view *view, const struct target *target)
+{
+    enum status status = STATUS_OK;
+    size_t rows = (size_t)target->height_px;
+    if (!state->counting)
+        status = make_program(workspace, state, true, &state->counting);
+    if (status)
+        return status;
+    GLuint counters = tally_words_begin(workspace, 0, rows);
+    draw_trees(workspace, state, state->counting, view, target);
+    workspace->tally.lookups += tally_words_end(workspace, counters, 0, rows);
+    return STATUS_OK;
+}
+
 static enum status draw(struct workspace *workspace, void *own, const struct view *view,
                         struct target *target)
 {
@@ -371,9 +397,13 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     backdrop_draw(workspace, state->backdrop, view);
     gl->Flush(); /* a software GL fills the backdrop while the trees are culled and binned */
-    if (upload_trees(workspace, state, view))
-        draw_trees(workspace, state, view, target);
-    return gl_check(gl, "ray-texels-gl", workspace->error);
+    bool any = upload_trees(workspace, state, view);
+    enum status status = STATUS_OK;
+    if (any && workspace->counted)
+        status = count_trees(workspace, state, view, target);
+    else if (any)
+        draw_trees(workspace, state, state->program, view, target);
+    return status ? status : gl_check(gl, "ray-texels-gl", workspace->error);
 }
 
 extern const struct method ray_texels_gl_method;

@@ -20,6 +20,9 @@ layout(binding = 3) uniform usamplerBuffer firsts;   // of each tile's entries
 layout(binding = 4) uniform usamplerBuffer entries;  // trees, tile by tile
 layout(binding = 5) uniform sampler2D depths;
 layout(location = 0) out vec4 color;
+#ifdef COUNT
+layout(std430, binding = 0) buffer counts_buffer { uint counts[]; };  // lookups of a row of pixels
+#endif
 
 // x' M y of a packed matrix: its 5 entries of 6 bits, each by its factor.
 struct form {
@@ -97,6 +100,9 @@ void main()
     int entry = int(texelFetch(firsts, tile).r), end = int(texelFetch(firsts, tile + 1).r);
     float left = 1.0;
     vec3 sum = vec3(0.0);
+#ifdef COUNT
+    uint lookups = 0u;  // a cell is one, a voxel two, as the CPU's march counts them
+#endif
     // A software GL runs both sides of each branch, and the body of a loop once more than its test at the top allows:
     // loops are tested at their end, and what is not met has no share. What is read behind a loop must then be
     // carried by it, each from its own last value (llvmpipe 22 makes the others again, also for lanes that have left).
@@ -146,6 +152,9 @@ void main()
                 pace = clamp(span - along, 0.0, limits.z);
                 float middle = along + 0.5 * pace;
                 ivec3 p = ivec3(clamp(start + middle * u, vec3(0.0), most));
+#ifdef COUNT
+                lookups += pace > 0.0 && cell < FIRST ? 1u : 0u;  // else it finds the same again
+#endif
                 cell = texelFetch(cells, int(place.z) + (p.z * grid.y + p.y) * grid.x + p.x).r;
                 if (cell < FIRST)
                     along = max(along + limits.z, middle + (float(cell) - 1.0) * leap);
@@ -153,6 +162,9 @@ void main()
             bool empty = cell < FIRST;
             vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)), empty ? 0.0 : pace, f_eye,
                                     f_sun, f_both);
+#ifdef COUNT
+            lookups += empty || pace == 0.0 ? 0u : 2u;
+#endif
             along += empty ? 0.0 : limits.z;
             float share = min(left * (1.0 - met.a) * weight, left);
             left -= share;
@@ -165,5 +177,8 @@ void main()
         sum /= 1.0 - left;
         left = 0.0;
     }
+#ifdef COUNT
+    atomicAdd(counts[int(pixel.y)], lookups);
+#endif
     color = vec4(sum, 1.0 - left);
 }

@@ -174,6 +174,47 @@ static void test_calibrate__draw_calls_are_as_many_as_counted(void **state)
     scenery_close(&scenery);
 }
 
+/* The mean of 16 texels in a row, which begin again behind the last. */
+static void test_calibrate__every_sample_is_another_texel(void **state)
+{
+    (void)state;
+    struct scenery scenery;
+    scenery_open(&scenery);
+    work_see(&scenery, CALIBRATION_samples_bilinear, 1, 7);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            double sum = 0;
+            for (int i = 0; i < 16; i++)
+                sum += (x + i) % 256 / 255.0;
+            check_near(pixel(&scenery, x, y)[0], sum / 16, 2e-3);
+            check_near(pixel(&scenery, x, y)[1], (y % 256) / 255.0, 2e-3);
+        }
+    check_near(scenery.works[CALIBRATION_samples_bilinear].count,
+               16 * scenery.works[CALIBRATION_fill_opaque].count, 0);
+    scenery_close(&scenery);
+}
+
+/* Every word is its place: the sum of the places that a fragment's sequence visits. */
+static void test_calibrate__a_shader_looks_up_scattered_words(void **state)
+{
+    (void)state;
+    struct scenery scenery;
+    scenery_open(&scenery);
+    work_see(&scenery, CALIBRATION_lookups_shader, 1, -1);
+    for (uint32_t y = 0; y < HEIGHT; y++)
+        for (uint32_t x = 0; x < WIDTH; x++) {
+            uint32_t at = x + (y << 13), sum = 0;
+            for (int i = 0; i < 32; i++) {
+                at += UINT32_C(0x9e3779b9);
+                sum += at >> 16;
+            }
+            check_near(pixel(&scenery, (int)x, (int)y)[1], sum, 0);
+        }
+    check_near(scenery.works[CALIBRATION_lookups_shader].count,
+               32 * scenery.works[CALIBRATION_fill_opaque].count, 0);
+    scenery_close(&scenery);
+}
+
 static void test_calibrate__memory_is_copied_and_added_whole(void **state)
 {
     (void)state;
@@ -269,6 +310,8 @@ int main(void)
         cmocka_unit_test(test_calibrate__small_triangles_are_all_drawn_and_leave_no_gap),
         cmocka_unit_test(test_calibrate__culled_and_outside_triangles_shade_nothing),
         cmocka_unit_test(test_calibrate__draw_calls_are_as_many_as_counted),
+        cmocka_unit_test(test_calibrate__every_sample_is_another_texel),
+        cmocka_unit_test(test_calibrate__a_shader_looks_up_scattered_words),
         cmocka_unit_test(test_calibrate__memory_is_copied_and_added_whole),
         cmocka_unit_test(test_calibrate__lookups_meet_all_of_each_thread_s_words),
         cmocka_unit_test(test_calibrate__a_secondary_ray_starts_at_every_hit),

@@ -40,6 +40,7 @@ static struct calibration round_machine(void)
         {CALIBRATION_rays_primary, 10e6, NAN},    {CALIBRATION_rays_shadow, 5e6, NAN},
         {CALIBRATION_lookups_near, 2e9, NAN},     {CALIBRATION_memory_read, 20e9, NAN},
         {CALIBRATION_memory_copy, 16e9, NAN},     {CALIBRATION_memory_triad, 18e9, NAN},
+        {CALIBRATION_lookups_shader, 1e9, NAN},   {CALIBRATION_samples_bilinear, 200e6, NAN},
     };
     for (size_t i = 0; i < CALIBRATION_COUNT; i++)
         made.measures[i] = (struct calibration_measure){{NAN, NAN, NAN}, NAN};
@@ -153,6 +154,7 @@ static struct limit limit_counted(double rays, double occlusion_rays, double loo
     struct cell cell = {.width_px = 800, .height_px = 600};
     struct result result;
     result_init(&result, &cell, 0);
+    result.renderer = "cpu";
     result.rays = rays;
     result.occlusion_rays = occlusion_rays;
     result.lookups = lookups;
@@ -174,6 +176,23 @@ static void test_limit__a_cell_without_opengl_is_bound_by_what_it_counted(void *
     check_near(limit.bounds[LIMIT_MEMORY], 7.68e6 / 20e9, 1e-12);
     assert_true(isnan(limit.bounds[LIMIT_RAYS]) && isnan(limit.bounds[LIMIT_FILL]));
     check_limit(limit_counted(NAN, NAN, 20e6, 400e6, 0.04), LIMIT_MEMORY, 0.020, 0.5);
+}
+
+static void test_limit__a_shader_s_lookups_and_samples_go_by_its_own_rates(void **state)
+{
+    (void)state;
+    struct calibration machine = round_machine();
+    struct cell cell = {.width_px = 800, .height_px = 600};
+    struct result result;
+    result_init(&result, &cell, 0);
+    result.renderer = "round";
+    result.lookups = 20e6; /* at 1 G/s; the CPU has 2 G/s */
+    result.samples = 2e6;  /* at 200 M/s */
+    struct interval seconds = {0.04, 0.02, 0.16};
+    check_limit(limit_of(&machine, &result, seconds), LIMIT_LOOKUPS, 0.02, 0.5);
+    check_near(limit_of(&machine, &result, seconds).bounds[LIMIT_SAMPLES], 0.01, 1e-12);
+    result.samples = 6e6;
+    check_limit(limit_of(&machine, &result, seconds), LIMIT_SAMPLES, 0.03, 0.75);
 }
 
 static void test_limit__a_frame_faster_than_its_bytes_found_them_in_caches(void **state)
@@ -565,6 +584,7 @@ int main(void)
         cmocka_unit_test(test_limit__a_frame_that_mixes_sizes_is_held_against_culled_triangles),
         cmocka_unit_test(test_limit__what_was_not_counted_bounds_nothing),
         cmocka_unit_test(test_limit__a_cell_without_opengl_is_bound_by_what_it_counted),
+        cmocka_unit_test(test_limit__a_shader_s_lookups_and_samples_go_by_its_own_rates),
         cmocka_unit_test(test_limit__a_frame_faster_than_its_bytes_found_them_in_caches),
         cmocka_unit_test(test_limit__is_told_by_a_calibration_of_the_same_kind),
         cmocka_unit_test(test_limit__a_reference_is_held_against_the_rates_of_rays),

@@ -1,6 +1,8 @@
 /* Impostors: trees and order on the GL, programs, the state of blending, test and coverage. */
 #include "bake/impostor.h"
 
+#include "bake/tally.h"
+
 #include "impostor.glsl.h"
 
 #include <string.h>
@@ -94,6 +96,8 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     impostor->scene = scene;
     impostor->alpha = request->atlas.alpha;
     impostor->nearest = request->atlas.nearest;
+    impostor->texels =
+        (uint64_t)(request->mixed ? request->mixed : 1) * (request->atlas.depth ? 3 : 2);
     enum status status = backdrop_prepare(workspace, scene, &impostor->backdrop);
     if (status == STATUS_OK)
         status = atlas_build(workspace, scene, &request->atlas, &impostor->atlas);
@@ -250,8 +254,10 @@ enum status impostor_begin(struct workspace *workspace, struct impostor *imposto
         gl->NamedBufferSubData(impostor->order_buffer, 0,
                                (GLsizeiptr)(list->count * sizeof *list->instances),
                                list->instances);
+    enum status status = blend ? STATUS_OK : draw_near(workspace, impostor, view);
+    tally_texels_begin(workspace);
     if (!blend)
-        return draw_near(workspace, impostor, view);
+        return status;
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     gl->DepthMask(GL_FALSE);
@@ -324,6 +330,7 @@ enum status impostor_end(struct workspace *workspace, const struct impostor *imp
 {
     struct gl *gl = workspace->gl;
     enum status status = STATUS_OK;
+    tally_texels_end(workspace, impostor->texels, impostor->nearest);
     gl->Disable(GL_BLEND);
     gl->DepthMask(GL_TRUE);
     if (impostor->alpha == ATLAS_BLEND)

@@ -30,6 +30,7 @@ struct impostor {
     struct nearby *nearby;
     enum atlas_alpha alpha;
     bool nearest;    /* texels of minified pictures */
+    uint64_t texels; /* that a fragment takes */
     GLuint vertices; /* no attributes; the index buffer of fans */
     GLuint instances_buffer, order_buffer;
     GLuint sunlights_buffer; /* pictures x IMPOSTOR_SUN_STEPS: what the sun makes of the channels */
@@ -43,6 +44,7 @@ struct impostor {
 struct impostor_request {
     struct atlas_request atlas;
     size_t quads_each; /* a tree */
+    int mixed;         /* pictures in a fragment; 0: 1 */
     float near_radii;  /* nearby.h */
 };
 

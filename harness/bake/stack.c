@@ -1,5 +1,6 @@
 /* Drawing of forests as stacks of slices: programs, buffers, runs of trees. */
 #include "bake/stack_bake.h"
+#include "bake/tally.h"
 
 #include "stack.glsl.h"
 
@@ -179,6 +180,7 @@ enum status stack_trees(struct workspace *workspace, struct stack *stack, const 
     nearby_take(stack->nearby, view, CULL_BACK_TO_FRONT, &list);
     struct fill fill = {0, 0};
     use_program(workspace, stack, view);
+    tally_texels_begin(workspace);
     for (size_t i = 0; i < list.count; i++) {
         if (fill.parts + PARTS_MOST > BATCH_PARTS ||
             fill.quads + PARTS_MOST * STACK_QUADS_MOST > BATCH_QUADS) {
@@ -189,6 +191,9 @@ enum status stack_trees(struct workspace *workspace, struct stack *stack, const 
                          fill);
     }
     draw_batch(workspace, stack, fill);
+    tally_texels_end(workspace,
+                     (stack->request.turns > 0 ? 1 : 2) * (stack->request.interpolate ? 2 : 1),
+                     false);
     gl->Disable(GL_BLEND);
     gl->DepthMask(GL_TRUE);
     enum status status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);

@@ -22,7 +22,7 @@ const char *calibration_unit(enum calibration_kind kind, double *factor)
         [CALIBRATION_FILL] = {"Mpix/s", 1e-6},      [CALIBRATION_TRIANGLES] = {"Mtri/s", 1e-6},
         [CALIBRATION_VERTICES] = {"Mvert/s", 1e-6}, [CALIBRATION_CALLS] = {"kcalls/s", 1e-3},
         [CALIBRATION_RAYS] = {"Mrays/s", 1e-6},     [CALIBRATION_LOOKUPS] = {"Mloads/s", 1e-6},
-        [CALIBRATION_MEMORY] = {"GB/s", 1e-9},
+        [CALIBRATION_MEMORY] = {"GB/s", 1e-9},      [CALIBRATION_SAMPLES] = {"Msamp/s", 1e-6},
     };
     *factor = units[kind].factor;
     return units[kind].unit;

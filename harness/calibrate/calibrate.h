@@ -26,6 +26,9 @@
     X(calls_bare, CALLS, "call", "nothing changes between two draws of a triangle")                \
     X(calls_uniform, CALLS, "call", "a uniform changes")                                           \
     X(calls_texture, CALLS, "call", "a texture is bound")                                          \
+    X(samples_bilinear, SAMPLES, "sample", "16 bilinear ones a fragment, of a layer of 256 KiB")   \
+    X(lookups_shader, LOOKUPS, "load",                                                             \
+      "32 a fragment, of 4 bytes scattered over a buffer of 256 KiB")                              \
     X(rays_primary, RAYS, "ray", "at one poplar, packets of 16 neighbours")                        \
     X(rays_shadow, RAYS, "ray", "from what they hit to the sun, packets of 16")                    \
     X(rays_ambient, RAYS, "ray", "from what they hit into the hemisphere, packets of 16")          \
@@ -39,6 +42,7 @@ enum calibration_kind { /* of work that is counted */
                         CALIBRATION_TRIANGLES,
                         CALIBRATION_VERTICES,
                         CALIBRATION_CALLS,
+                        CALIBRATION_SAMPLES,
                         CALIBRATION_RAYS,
                         CALIBRATION_LOOKUPS,
                         CALIBRATION_MEMORY

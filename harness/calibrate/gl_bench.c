@@ -2,51 +2,18 @@
  * and target as the methods use. */
 #include "calibrate/bench.h"
 
+#include "gl_bench.glsl.h"
+
 #include <math.h>
 #include <string.h>
 
-/* A shape's corners (in px of a cell) are stretched, and put at each instance's place. */
-static const char source[] = "uniform vec2 cell_px, to_ndc;\n"
-                             "uniform float depth;\n"
-                             "uniform float texel;\n"
-                             "uniform vec4 color;\n"
-                             "layout(binding = 0) uniform sampler2DArray pictures;\n"
-                             "#pragma stage vertex\n"
-                             "layout(location = 0) in vec2 corner;\n"
-                             "layout(location = 1) in vec2 place_px;\n"
-                             "#ifdef TEXTURED\n"
-                             "out vec2 uv;\n"
-                             "#endif\n"
-                             "void main()\n"
-                             "{\n"
-                             "    vec2 px = corner * cell_px + place_px;\n"
-                             "#ifdef TEXTURED\n"
-                             "    uv = px * texel;\n"
-                             "#endif\n"
-                             "    gl_Position = vec4(px * to_ndc - 1.0, depth, 1.0);\n"
-                             "}\n"
-                             "#pragma stage fragment\n"
-                             "layout(location = 0) out vec4 result;\n"
-                             "#ifdef TEXTURED\n"
-                             "in vec2 uv;\n"
-                             "#endif\n"
-                             "void main()\n"
-                             "{\n"
-                             "#ifdef TEXTURED\n"
-                             "    result = texture(pictures, vec3(uv, 1.0)) * color;\n"
-                             "#else\n"
-                             "    result = color;\n"
-                             "#endif\n"
-                             "#ifdef TESTED\n"
-                             "    if (result.a < 0.5)\n"
-                             "        discard;\n"
-                             "#endif\n"
-                             "}\n";
-
 enum {
-    PATCH = 64,          /* cells along a patch of small triangles */
-    TEXTURE_PX = 256,    /* along a side; a layer's left half is opaque */
-    QUADS_MOST = 1 << 13 /* a loop */
+    PATCH = 64,           /* cells along a patch of small triangles */
+    TEXTURE_PX = 256,     /* along a side; a layer's left half is opaque */
+    QUADS_MOST = 1 << 13, /* a loop */
+    SAMPLES = 16,         /* a fragment */
+    LOOKUPS = 32,
+    WORDS = 1 << 16 /* 256 KiB: as the CPU's lookups have them (bench.h) */
 };
 
 /* Triangles to draw, all instances at once. */
@@ -58,7 +25,7 @@ struct shape {
     float cell_px[2];
 };
 
-enum paint { PAINT_FLAT, PAINT_TEXTURED, PAINT_TESTED, PAINTS_COUNT };
+enum paint { PAINT_FLAT, PAINT_TEXTURED, PAINT_TESTED, PAINT_SAMPLES, PAINT_LOOKUPS, PAINTS_COUNT };
 
 struct gl_bench {
     struct gl *gl;
@@ -68,7 +35,7 @@ struct gl_bench {
         GLuint program;
         GLint cell_px, depth, color;
     } paints[PAINTS_COUNT];
-    GLuint textures[2];
+    GLuint textures[2], words;
     struct shape picture, shared, single, quads[3];
 };
 
@@ -188,14 +155,27 @@ static void textures_make(struct gl_bench *bench)
     }
 }
 
+static enum status words_make(struct gl_bench *bench, struct error *error)
+{
+    uint32_t *words = ARENA_ARRAY(bench->arena, uint32_t, WORDS);
+    for (uint32_t i = 0; i < WORDS; i++)
+        words[i] = i;
+    GLuint buffer = gl_buffer(bench->gl, WORDS * sizeof *words, words, 0);
+    return gl_texture_buffer(bench->gl, GL_R32UI, sizeof *words, buffer, &bench->words, error);
+}
+
 static enum status paints_make(struct gl_bench *bench, struct error *error)
 {
-    static const char *const defines[PAINTS_COUNT] = {NULL, "TEXTURED 1\n",
-                                                      "TEXTURED 1\nTESTED 1\n"};
+    const char *const defines[PAINTS_COUNT] = {
+        [PAINT_TEXTURED] = "TEXTURED 1\n",
+        [PAINT_TESTED] = "TEXTURED 1\nTESTED 1\n",
+        [PAINT_SAMPLES] = arena_printf(bench->arena, "TEXTURED 1\nSAMPLES %d\n", SAMPLES),
+        [PAINT_LOOKUPS] = arena_printf(bench->arena, "LOOKUPS %d\n", LOOKUPS)};
     struct gl *gl = bench->gl;
     for (int i = 0; i < PAINTS_COUNT; i++) {
         GLuint program;
-        enum status status = gl_program(gl, "calibration", source, defines[i], &program, error);
+        enum status status =
+            gl_program(gl, "calibration", gl_bench_glsl, defines[i], &program, error);
         if (status)
             return status;
         bench->paints[i].program = program;
@@ -235,6 +215,10 @@ static const struct drawing drawings[CALIBRATION_COUNT] = {
     [CALIBRATION_calls_uniform] = {.shape = offsetof(struct gl_bench, quads[0])},
     [CALIBRATION_calls_texture] = {.shape = offsetof(struct gl_bench, quads[0]),
                                    .paint = PAINT_TEXTURED},
+    [CALIBRATION_samples_bilinear] = {.shape = offsetof(struct gl_bench, picture),
+                                      .paint = PAINT_SAMPLES},
+    [CALIBRATION_lookups_shader] = {.shape = offsetof(struct gl_bench, picture),
+                                    .paint = PAINT_LOOKUPS},
 };
 
 static const struct shape *shape_of(const struct gl_bench *bench, enum calibration_index index)
@@ -256,6 +240,7 @@ static void state_set(const struct gl_bench *bench, enum calibration_index index
     (drawing->culled ? gl->Enable : gl->Disable)(GL_CULL_FACE);
     gl->CullFace(GL_FRONT);
     gl->BindTextureUnit(0, bench->textures[0]);
+    gl->BindTextureUnit(1, bench->words);
     gl->BindVertexArray(shape->vertex_array);
     gl->UseProgram(bench->paints[drawing->paint].program);
     gl->Uniform2f(bench->paints[drawing->paint].cell_px, shape->cell_px[0], shape->cell_px[1]);
@@ -320,6 +305,8 @@ static struct work work_count(struct gl_bench *bench, enum calibration_index ind
     }
     double fragments = drawings[index].culled ? 0 : (double)counted.fragments;
     work.count = kind == CALIBRATION_FILL       ? fragments
+                 : kind == CALIBRATION_SAMPLES  ? fragments * SAMPLES
+                 : kind == CALIBRATION_LOOKUPS  ? fragments * LOOKUPS
                  : kind == CALIBRATION_VERTICES ? (double)counted.vertices
                  : kind == CALIBRATION_CALLS    ? CALLS_A_LOOP
                                                 : triangles;
@@ -341,6 +328,8 @@ enum status gl_bench_create(struct arena *arena, const struct calibrate_request 
     status = gl_target(made->gl, request->width_px, request->height_px, request->format,
                        &made->target, error);
     if (!status)
+        status = words_make(made, error);
+    if (!status)
         status = paints_make(made, error);
     if (status)
         return status;
@@ -355,7 +344,7 @@ enum status gl_bench_create(struct arena *arena, const struct calibrate_request 
     textures_make(made);
     const float black[4] = {0, 0, 0, 0};
     made->gl->ClearNamedFramebufferfv(made->target.framebuffer, GL_COLOR, 0, black);
-    for (size_t i = CALIBRATION_fill_opaque; i <= CALIBRATION_calls_texture; i++)
+    for (size_t i = CALIBRATION_fill_opaque; i <= CALIBRATION_lookups_shader; i++)
         works[i] = work_count(made, (enum calibration_index)i);
     return gl_check(made->gl, "calibration", error);
 }

@@ -66,13 +66,7 @@ static enum status picture_draw(struct stage *stage, const struct view *view, st
         gl_counters_reset(stage->gl);
         gl_statistics_begin(stage->gl);
     }
-    struct method_tally before = stage->workspace.tally;
     enum status status = stage_draw(stage, view, NULL);
-    const struct method_tally *after = &stage->workspace.tally;
-    album->tally.rays += after->rays - before.rays;
-    album->tally.occlusion_rays += after->occlusion_rays - before.occlusion_rays;
-    album->tally.lookups += after->lookups - before.lookups;
-    album->tally.bytes += after->bytes - before.bytes;
     if (stage->gl) {
         struct gl_statistics one = gl_statistics_end(stage->gl);
         album->statistics.vertices += one.vertices;
@@ -87,6 +81,23 @@ static enum status picture_draw(struct stage *stage, const struct view *view, st
         return status;
     *frame = stage_read(stage, stage->scene_arena);
     return frame_check(*frame, stage->error);
+}
+
+/* The same view once more for the method's own counts: a shader that counts is another one than
+ * that which is timed and seen. */
+static enum status picture_count(struct stage *stage, const struct view *view, struct album *album)
+{
+    const struct method_tally before = stage->workspace.tally;
+    stage->workspace.counted = true;
+    enum status status = stage_draw(stage, view, NULL);
+    stage->workspace.counted = false;
+    const struct method_tally *after = &stage->workspace.tally;
+    album->tally.rays += after->rays - before.rays;
+    album->tally.occlusion_rays += after->occlusion_rays - before.occlusion_rays;
+    album->tally.lookups += after->lookups - before.lookups;
+    album->tally.samples += after->samples - before.samples;
+    album->tally.bytes += after->bytes - before.bytes;
+    return status ? status : stage_check(stage, "a counted picture");
 }
 
 /* The reference from the run's folder; without a folder through the cache. NULL with a note when
@@ -201,6 +212,8 @@ static enum status view_picture(struct stage *stage, size_t index, size_t count,
     view_at(stage->scene, result->time, &view);
     stage_announce(stage, "a picture");
     enum status status = picture_draw(stage, &view, album, &frame);
+    if (!status)
+        status = picture_count(stage, &view, album);
     if (status)
         return error_context(stage->error, "picture %zu", index);
     result->picture_hash = frame_hash(frame);
@@ -248,6 +261,7 @@ static void album_tally(struct stage *stage, const struct album *album)
     result->rays = mean_count(album->tally.rays, album->count);
     result->occlusion_rays = mean_count(album->tally.occlusion_rays, album->count);
     result->lookups = mean_count(album->tally.lookups, album->count);
+    result->samples = mean_count(album->tally.samples, album->count);
     result->moved_bytes = (double)album->tally.bytes / (double)album->count +
                           pixel_bytes[stage->gl ? target->format : TARGET_RGBA32F] *
                               target->width_px * target->height_px;

@@ -18,16 +18,20 @@ enum {
     TRAIT_NO_TREES = 1u << 18, /* sky and terrain alone: a floor for the others */
 };
 
-/* What frames did of that which the harness cannot count itself. A method without OpenGL adds
- * (workspace->tally.rays += ...) what each call of draw did, summed in its threads first, so that
- * counting costs no time; for the same view the same figures. The harness takes the difference over
- * a picture; what stays 0 is not counted. With the machine's calibrated rates it tells what bounds
- * a cell (results/limit.h), so count what any program with this algorithm had to do, not waste. */
+/* What a frame did of that which the harness cannot count itself; a method adds to
+ * workspace->tally (workspace->tally.rays += ...). With the machine's calibrated rates it tells
+ * what bounds a cell (results/limit.h), so count what any program with this algorithm had to do,
+ * not waste. The harness takes the difference over a draw that it marks by workspace->counted; for
+ * the same view the same figures; what stays 0 is not counted. A method without OpenGL may count in
+ * every draw, summed in its threads first, so that counting costs no time; one with OpenGL counts
+ * in counted draws alone (bake/tally.h). */
 struct method_tally {
     uint64_t rays;           /* to the nearest triangle (embree_intersect), lanes, not packets */
-    uint64_t occlusion_rays; /* to any triangle (embree_occluded) */
+    uint64_t occlusion_rays; /* to any triangle (embree_occluded); rays are the CPU's alone */
     uint64_t lookups;        /* loads of up to 8 bytes from places that rays or pixels decide: a
-                                voxel, a texel, a corner of a filter, a node; each lane for itself */
+                                voxel, a texel, a corner of a filter, a node; each lane for itself;
+                                of a shader also texels that it fetches unfiltered */
+    uint64_t samples;        /* texels that OpenGL filtered for a shader, bilinear or more */
     uint64_t bytes; /* that the frame must read or write, each counted once however often it
                        is used; without the picture, which the harness adds */
 };
@@ -43,6 +47,7 @@ struct workspace {
     int threads;               /* that a CPU method may use, and llvmpipe uses */
     uint64_t seed;
     struct method_tally tally; /* of all frames so far */
+    bool counted;              /* this draw is neither timed nor seen: time for a tally by OpenGL */
 };
 
 struct method {          /* its name is its file's name, '-' written '_' in C */

@@ -113,6 +113,7 @@ static void fill_rates(struct row *row)
                                           : isnan(occlusion) ? rays / seconds
                                                              : (rays + occlusion) / seconds;
     row->values[COLUMN_lookups_per_second] = row->values[COLUMN_lookups] / seconds;
+    row->values[COLUMN_samples_per_second] = row->values[COLUMN_samples] / seconds;
     row->values[COLUMN_triangles_per_second] = row->values[COLUMN_triangles] / seconds;
     row->values[COLUMN_fragments_per_second] = row->values[COLUMN_fragments] / seconds;
 }

@@ -18,6 +18,7 @@
     X(trees_per_second, "1/s", +1, "trees of the scene / frame_seconds")                           \
     X(rays_per_second, "1/s", +1, "rays of both kinds / frame_seconds")                            \
     X(lookups_per_second, "1/s", +1, "lookups / frame_seconds")                                    \
+    X(samples_per_second, "1/s", +1, "samples / frame_seconds")                                    \
     X(triangles_per_second, "1/s", +1, "triangles submitted / frame_seconds")                      \
     X(fragments_per_second, "1/s", +1, "fragments / frame_seconds")                                \
     X(limit_fraction, "", +1, "of the machine's limit that the cell reaches (results/README.md)")  \

@@ -47,6 +47,7 @@ const struct shown shown_table[] = {
     {COLUMN_fragments_per_second, "fragments", "Mpx/s", 1e-6},
     {COLUMN_rays_per_second, "rays", "M/s", 1e-6},
     {COLUMN_lookups_per_second, "lookups", "M/s", 1e-6},
+    {COLUMN_samples_per_second, "samples", "M/s", 1e-6},
 };
 const size_t shown_table_count = sizeof shown_table / sizeof *shown_table;
 

@@ -48,7 +48,7 @@ void page_limit(const struct page *page)
         "<h2 id=\"limit\">How near the machine's limit</h2>\n<p>Between its rounds the run "
         "measured "
         "what this machine can do at most. Counts of a cell's draw calls, vertices, triangles and "
-        "fragments, and of the rays, lookups and bytes that a method without OpenGL tells, over "
+        "fragments, and of the rays, lookups, texture samples and bytes that a method tells, over "
         "these rates give the least time of its frame; the largest bounds it, and its share of "
         "the measured time is the fraction of the limit that the cell reaches: the column "
         "<i>of limit</i> of the results. The rest is shading, textures, and other work of the "

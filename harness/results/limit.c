@@ -18,6 +18,11 @@ const char *limit_word(enum limit_resource resource)
     return words[resource];
 }
 
+static bool is_without_gl(const struct result *result)
+{
+    return result->renderer && strcmp(result->renderer, "cpu") == 0;
+}
+
 const struct calibration *limit_calibration(const struct run *run, const struct result *result)
 {
     const struct calibration *best = NULL;
@@ -26,8 +31,7 @@ const struct calibration *limit_calibration(const struct run *run, const struct 
         const struct calibration *one = &run->calibrations[i];
         if (one->threads != result->threads || !result->renderer)
             continue;
-        bool without_gl = strcmp(result->renderer, "cpu") == 0;
-        if (!without_gl &&
+        if (!is_without_gl(result) &&
             (one->format != result->cell.format || strcmp(one->renderer, result->renderer) != 0))
             continue;
         double pixels = (double)result->cell.width_px * result->cell.height_px;
@@ -164,9 +168,9 @@ static void bind(struct limit *limit, enum limit_resource resource, struct inter
     limit->seconds = seconds;
 }
 
-/* What a method without OpenGL counts itself, and the memory that every picture takes. */
-static void bind_cpu(struct limit *limit, const struct calibration *calibration,
-                     const struct result *result, double frame_seconds)
+/* What a method counts itself, and the memory that every picture takes. */
+static void bind_tally(struct limit *limit, const struct calibration *calibration,
+                       const struct result *result, double frame_seconds)
 {
     const struct calibration_measure *measures = calibration->measures;
     bind(
@@ -174,7 +178,12 @@ static void bind_cpu(struct limit *limit, const struct calibration *calibration,
         seconds_add(least_seconds(result->rays, measures[CALIBRATION_rays_primary].rate),
                     least_seconds(result->occlusion_rays, measures[CALIBRATION_rays_shadow].rate)));
     bind(limit, LIMIT_LOOKUPS,
-         least_seconds(result->lookups, measures[CALIBRATION_lookups_near].rate));
+         least_seconds(
+             result->lookups,
+             measures[is_without_gl(result) ? CALIBRATION_lookups_near : CALIBRATION_lookups_shader]
+                 .rate));
+    bind(limit, LIMIT_SAMPLES,
+         least_seconds(result->samples, measures[CALIBRATION_samples_bilinear].rate));
     struct interval memory = least_seconds(result->moved_bytes, fastest_memory(calibration));
     limit->cached = memory.value > frame_seconds;
     if (!limit->cached)
@@ -203,7 +212,7 @@ struct limit limit_of(const struct calibration *calibration, const struct result
     bind(&limit, LIMIT_TRIANGLES, triangles);
     bind(&limit, LIMIT_FILL,
          least_seconds(result->fragments, measures[CALIBRATION_fill_opaque].rate));
-    bind_cpu(&limit, calibration, result, frame_seconds.value);
+    bind_tally(&limit, calibration, result, frame_seconds.value);
     limit_reach(&limit, frame_seconds);
     return limit;
 }

@@ -13,8 +13,9 @@
     X(LIMIT_VERTICES, "vertices", "vertices / vertices")                                           \
     X(LIMIT_TRIANGLES, "triangles", "primitives / rate of triangles of their mean size")           \
     X(LIMIT_FILL, "fill", "fragments / fill_opaque")                                               \
+    X(LIMIT_SAMPLES, "samples", "samples / samples_bilinear")                                      \
     X(LIMIT_RAYS, "rays", "rays / rays_primary + occlusion rays / rays_shadow")                    \
-    X(LIMIT_LOOKUPS, "lookups", "lookups / lookups_near")                                          \
+    X(LIMIT_LOOKUPS, "lookups", "lookups / lookups_near; by OpenGL / lookups_shader")              \
     X(LIMIT_MEMORY, "memory", "bytes moved / the fastest of memory_read, _copy and _triad")
 
 enum limit_resource {

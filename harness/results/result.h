@@ -11,7 +11,7 @@
 
 /* Version 2 added the calibration; a run of version 1 is read as one that has none. Version 3 added
  * the method's own counts, calibrations of several rounds, and the references' cost. Version 4
- * added the angles of views. */
+ * added the angles of views, and what methods with OpenGL count. */
 #define RESULT_VERSION 4
 #define RESULT_VERSION_OLDEST 1
 
@@ -39,7 +39,8 @@
     X(fragments, "", 0, "fragments shaded a frame (pipeline statistics)")                          \
     X(rays, "", 0, "rays to the nearest triangle a frame (the method's count)")                    \
     X(occlusion_rays, "", 0, "rays to any triangle a frame (the method's count)")                  \
-    X(lookups, "", 0, "voxels and texels that the CPU looked up a frame (the method's count)")     \
+    X(lookups, "", 0, "voxels and texels that were looked up a frame (the method's count)")        \
+    X(samples, "", 0, "texels that OpenGL filtered for shaders a frame (the method's count)")      \
     X(moved_bytes, "B", 0, "a frame's least memory traffic: its picture, what the method counted") \
     X(load_average, "", -1, "1-minute load of the machine at the start")
 
