@@ -55,8 +55,8 @@ struct cull *cull_create(struct arena *arena, const struct scene *scene,
     return cull;
 }
 
-/* Planes of the frustum, unit normals inward. Gribb and Hartmann 2001. */
-static void frustum_planes(const struct view *view, float planes[6][4])
+/* Gribb and Hartmann 2001. */
+void cull_planes(const struct view *view, float planes[6][4])
 {
     for (int i = 0; i < 6; i++) {
         int row = i / 2;
@@ -96,7 +96,7 @@ struct cull_list cull_view(struct cull *cull, const struct view *view, enum cull
     const float *f = view->forward, *eye = view->eye_m;
     float offset = f[0] * eye[0] + f[1] * eye[1] + f[2] * eye[2];
     float planes[6][4], reach[BLOCK];
-    frustum_planes(view, planes);
+    cull_planes(view, planes);
     for (size_t begin = 0; begin < cull->count; begin += BLOCK) {
         size_t count = cull->count - begin < BLOCK ? cull->count - begin : BLOCK;
         reach_of_block(cull, begin, count, (const float(*)[4])planes, reach);

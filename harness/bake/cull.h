@@ -47,6 +47,9 @@ struct cull_list cull_view(struct cull *cull, const struct view *view, enum cull
 void cull_group(struct cull *cull, struct cull_list *list, const uint32_t *groups,
                 size_t groups_count, uint32_t *first);
 
+/* Planes of a view's frustum: unit normals inward, distance. */
+void cull_planes(const struct view *view, float planes[6][4]);
+
 /* Pixels that one metre covers at a depth of one metre: px = metres * cull_focal_px / depth. */
 float cull_focal_px(const struct view *view);
 
