@@ -2,7 +2,7 @@
 #include "bake/march.h"
 
 struct options {
-    int resolution, model, tile, isa;
+    int resolution, model, tile, cells, isa;
     float stop, step, bias, slab;
 };
 
@@ -19,6 +19,9 @@ static const struct option table[] = {
            "where crowns interlock they are drawn together, in slabs so deep: when thin, Chiba's sum "
            "of densities; 0: each tree whole, the nearer first"),
     OPTION(struct options, tile, 32, 8, 64, "px", "side of the tiles that trees are binned to"),
+    OPTION_WORD(struct options, cells, 0, "auto|off",
+                "trees are culled by cells of many, and drawn so where they are below a pixel; off: "
+                "each by itself"),
     OPTION_WORD(struct options, isa, 0, "auto|plain|avx2|avx512",
                 "the processor's vectors; another set than it has is drawn with plain C"),
     OPTION_END,
@@ -40,6 +43,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .bias = options->bias,
         .slab = options->slab,
         .tile_px = options->tile,
+        .cells = options->cells == 0,
         .isa = isas[options->isa],
     };
     return march_prepare(workspace, scene, &march, (struct march **)state);

@@ -309,7 +309,7 @@ static struct frame *march_picture(struct world *world, const struct march_optio
 }
 
 static const struct march_options usual = {
-    .resolution = 64, .stop = 0.02f, .step = 1, .bias = 0, .tile_px = 16};
+    .resolution = 64, .stop = 0.02f, .step = 1, .bias = 0, .tile_px = 16, .cells = true};
 
 /* Trees of the ball, the second overlapping the first, the third within it. */
 static struct world world_of_balls(size_t trees, size_t leaves, double leg_m)

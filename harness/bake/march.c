@@ -1,9 +1,9 @@
 /* The march's frame: trees sorted and binned to tiles, tiles drawn front to back by all threads. */
-#include "bake/cull.h"
 #include "bake/march_canvas.h"
+#include "bake/march_cells.h"
+#include "bake/march_fars.h"
 
 #include <math.h>
-#include <omp.h>
 #include <string.h>
 
 struct march {
@@ -12,24 +12,16 @@ struct march {
     march_block *block;
     struct march_species *species;
     struct march_tree *trees; /* one an instance */
-    struct cull *cull;
+    struct cull *cull;        /* NULL: there are cells */
+    struct cells *cells;      /* NULL: trees are culled one by one, and drawn so */
     struct backdrop_cpu *backdrop;
-    struct march_seen *seen;  /* of the trees in view, in their order */
+    struct march_fars *fars;
+    struct march_seen *seen;  /* of what is in view, in its order */
     struct march_span *spans; /* the same; NULL: trees are drawn whole */
-    size_t turns_count;       /* of all species */
-    struct march_far *fars;   /* by thread, region of the picture, turn */
     size_t tiles_capacity, entries_capacity;
     uint32_t *tile_first; /* threads + 1 runs of tiles + 1 */
     uint32_t *entries;    /* numbers of the list, tile by tile */
 };
-
-/* The picture's regions, each with one direction for its far trees. */
-enum { REGIONS = 4 };
-
-static size_t fars_of_thread(const struct march *march)
-{
-    return REGIONS * REGIONS * march->turns_count;
-}
 
 static march_block *block_named(const char *name)
 {
@@ -58,6 +50,7 @@ static enum status species_fill(struct workspace *workspace, struct plant *plant
     for (int i = 0; i < 3; i++) {
         float half = 0.5f * (mesh->maximum_m[i] - mesh->minimum_m[i]);
         species->center_m[i] = mesh->minimum_m[i] + half;
+        species->half_m[i] = half;
         square += half * half;
     }
     species->radius_m = sqrtf(square);
@@ -80,15 +73,16 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
                               &bounds[i]);
     if (status)
         return status;
-    march->turns_count = MARCH_TURNS * scene->species_count;
-    march->fars = ARENA_ARRAY(workspace->arena, struct march_far,
-                              fars_of_thread(march) * (size_t)workspace->threads);
     march->trees = ARENA_ARRAY(workspace->arena, struct march_tree, scene->instances_count);
     march->seen = ARENA_ARRAY(workspace->arena, struct march_seen, scene->instances_count);
     if (options->slab > 0)
         march->spans = ARENA_ARRAY(workspace->arena, struct march_span, scene->instances_count);
     march_trees_fill(scene, march->trees);
-    march->cull = cull_create(workspace->arena, scene, bounds);
+    march->fars = march_fars_create(workspace->arena, scene, march->trees, workspace->threads);
+    if (options->cells)
+        march->cells = cells_create(workspace->arena, scene, bounds);
+    else
+        march->cull = cull_create(workspace->arena, scene, bounds);
     return STATUS_OK;
 }
 
@@ -137,9 +131,42 @@ static size_t places_of(uint32_t *first, const struct tiles *tiles, int threads)
     return sum;
 }
 
+static bool is_cell(const struct march *march, uint32_t entry)
+{
+    return entry >= march->scene->instances_count;
+}
+
+/* Where entry k of the list is seen; of a tree or cell below a pixel, what it is seen as is asked
+ * for. */
+static void entry_see(struct march *march, const struct march_view *picture, int thread,
+                      uint32_t entry, float depth_m, size_t k)
+{
+    struct march_seen *seen = &march->seen[k];
+    float middle[3];
+    if (is_cell(march, entry)) {
+        uint32_t cell = entry - (uint32_t)march->scene->instances_count;
+        uint32_t species = cells_species(march->cells, cell);
+        const struct cells_sums *sums = cells_sums(march->cells, cell);
+        march_cell_middle(picture, species, sums, middle);
+        *seen = march_cell_see(picture, species, sums, middle);
+        if (march->spans)
+            march->spans[k] = (struct march_span){.near_m = middle[2], .far_m = middle[2]};
+        march_fars_ask(march->fars, thread, picture->view, species, MARCH_TURNS, middle);
+        return;
+    }
+    const struct march_tree *tree = &march->trees[entry];
+    *seen = march_see(picture, tree, depth_m);
+    if (march->spans)
+        march->spans[k] = march_span_of(picture, tree, seen->level);
+    if (seen->level == MARCH_SPLAT) {
+        march_middle(picture, tree, middle);
+        march_fars_ask(march->fars, thread, picture->view, tree->species, tree->turn, middle);
+    }
+}
+
 /* Threads take runs of the sorted list, so that each tile's entries keep the list's order. */
 static void bin(struct workspace *workspace, struct march *march, const struct march_view *picture,
-                const struct tiles *tiles, const struct cull_list *list)
+                const struct tiles *tiles, const struct cells_list *list)
 {
     const int threads = workspace->threads;
     const size_t run = tiles->count + 1, size = run * ((size_t)threads + 1);
@@ -152,10 +179,7 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
     for (int thread = 0; thread < threads; thread++) {
         size_t end = list->count * ((size_t)thread + 1) / (size_t)threads;
         for (size_t k = list->count * (size_t)thread / (size_t)threads; k < end; k++) {
-            const struct march_tree *tree = &march->trees[list->instances[k]];
-            march->seen[k] = march_see(picture, tree, list->depths_m[k]);
-            if (march->spans)
-                march->spans[k] = march_span_of(picture, tree, march->seen[k].level);
+            entry_see(march, picture, thread, list->entries[k], list->depths_m[k], k);
             tree_bin(tiles, &march->seen[k], march->tile_first + run * ((size_t)thread + 1), NULL,
                      0);
         }
@@ -178,22 +202,31 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
     }
 }
 
-/* The tree from far away in the direction of the tile's region. */
-static const struct march_far *far_of(const struct march *march, const struct march_view *picture,
-                                      const struct tiles *tiles, size_t tile,
-                                      const struct march_tree *tree, struct canvas *canvas)
+static bool is_splat(const struct march_seen *seen)
 {
-    const struct view *view = picture->view;
-    size_t x = tile % (size_t)tiles->across * REGIONS / (size_t)tiles->across;
-    size_t y = tile / (size_t)tiles->across * REGIONS / (size_t)tiles->down;
-    size_t turn = MARCH_TURNS * (size_t)tree->species + tree->turn;
-    struct march_far *far = &canvas->fars[(y * REGIONS + x) * march->turns_count + turn];
-    if (!far->made)
-        march_far_fill(picture, tree->species, tree->turn,
-                       ((float)x + 0.5f) / REGIONS * (float)view->width_px - 0.5f,
-                       ((float)y + 0.5f) / REGIONS * (float)view->height_px - 0.5f, march->block,
-                       far);
-    return far;
+    return seen->level == MARCH_SPLAT || seen->level == MARCH_CELL;
+}
+
+static void entry_splat(const struct march *march, const struct march_view *picture, uint32_t entry,
+                        struct canvas *canvas)
+{
+    struct march_splat splat;
+    struct march_far far;
+    float middle[3];
+    if (is_cell(march, entry)) {
+        uint32_t cell = entry - (uint32_t)march->scene->instances_count;
+        uint32_t species = cells_species(march->cells, cell);
+        const struct cells_sums *sums = cells_sums(march->cells, cell);
+        march_cell_middle(picture, species, sums, middle);
+        far = march_fars_at(march->fars, picture->view, species, MARCH_TURNS, middle);
+        march_cell_splat(picture, species, sums, middle, &far, &splat);
+    } else {
+        const struct march_tree *tree = &march->trees[entry];
+        march_middle(picture, tree, middle);
+        far = march_fars_at(march->fars, picture->view, tree->species, tree->turn, middle);
+        march_splat_of(picture, tree, &far, &splat);
+    }
+    canvas_splat(canvas, &splat, &picture->rays);
 }
 
 /* The end of the run of entries that reach into each other's depths. */
@@ -201,7 +234,7 @@ static uint32_t interlocked_end(const struct march *march, uint32_t at, uint32_t
 {
     float far_m = march->spans[march->entries[at++]].far_m;
     for (; at < end && march->spans[march->entries[at]].rest_m < far_m; at++) {
-        if (march->seen[march->entries[at]].level == MARCH_SPLAT)
+        if (is_splat(&march->seen[march->entries[at]]))
             break;
         far_m = fmaxf(far_m, march->spans[march->entries[at]].far_m);
     }
@@ -232,7 +265,7 @@ static float slab_end(const struct march *march, uint32_t first, uint32_t last, 
 /* Trees that stand in each other, slab by slab: as thin slabs, the sum of their densities, each
  * with its own colour. Chiba, Muraoka, Doi and Hosokawa 1997, with each tree's own normals. */
 static void interlocked_draw(const struct march *march, const struct march_view *picture,
-                             const struct cull_list *list, uint32_t first, uint32_t last,
+                             const struct cells_list *list, uint32_t first, uint32_t last,
                              struct canvas *canvas)
 {
     float from_m = picture->view->near_m, far_m = from_m;
@@ -243,7 +276,7 @@ static void interlocked_draw(const struct march *march, const struct march_view 
         for (uint32_t at = first; at < last; at++) {
             uint32_t k = march->entries[at];
             if (march->spans[k].near_m < to_m && march->spans[k].far_m > from_m)
-                canvas_march(canvas, picture, &march->trees[list->instances[k]], &march->seen[k],
+                canvas_march(canvas, picture, &march->trees[list->entries[k]], &march->seen[k],
                              from_m, to_m);
         }
         from_m = to_m;
@@ -252,7 +285,7 @@ static void interlocked_draw(const struct march *march, const struct march_view 
 
 /* Returns the lookups of its rays. */
 static uint64_t tile_draw(const struct march *march, const struct march_view *picture,
-                          const struct tiles *tiles, const struct cull_list *list, size_t tile,
+                          const struct tiles *tiles, const struct cells_list *list, size_t tile,
                           struct canvas *canvas, float *pixels)
 {
     const int side = tiles->side_px;
@@ -261,26 +294,31 @@ static uint64_t tile_draw(const struct march *march, const struct march_view *pi
     const uint32_t end = march->tile_first[tile + 1];
     for (uint32_t at = march->tile_first[tile]; at < end && canvas->open_count; at++) {
         uint32_t k = march->entries[at];
-        const struct march_tree *tree = &march->trees[list->instances[k]];
-        if (march->seen[k].level != MARCH_SPLAT && march->spans) {
+        if (is_splat(&march->seen[k])) {
+            entry_splat(march, picture, list->entries[k], canvas);
+        } else if (march->spans) {
             uint32_t last = interlocked_end(march, at, end);
             interlocked_draw(march, picture, list, at, last, canvas);
             at = last - 1;
-            continue;
+        } else {
+            canvas_march(canvas, picture, &march->trees[list->entries[k]], &march->seen[k], 0,
+                         INFINITY);
         }
-        if (march->seen[k].level != MARCH_SPLAT) {
-            canvas_march(canvas, picture, tree, &march->seen[k], 0, INFINITY);
-            continue;
-        }
-        struct march_splat splat;
-        march_splat_of(picture, tree, far_of(march, picture, tiles, tile, tree, canvas), &splat);
-        canvas_splat(canvas, &splat, &picture->rays);
     }
     canvas_end(canvas, march->options.stop, picture->view, pixels);
     uint64_t lookups = 0;
     for (int block = 0; block < canvas->blocks_count; block++)
         lookups += canvas->blocks[block].lookups;
     return lookups;
+}
+
+/* What is in view, front to back: by cells, or tree by tree. */
+static struct cells_list list_of(struct march *march, const struct view *view, int threads)
+{
+    if (march->cells)
+        return cells_view(march->cells, view, MARCH_CELL_PX, MARCH_SMALL_PX, threads);
+    struct cull_list list = cull_view(march->cull, view, CULL_FRONT_TO_BACK);
+    return (struct cells_list){list.count, list.instances, list.depths_m};
 }
 
 enum status march_draw(struct workspace *workspace, struct march *march, const struct view *view,
@@ -297,22 +335,22 @@ enum status march_draw(struct workspace *workspace, struct march *march, const s
     };
     const struct tiles tiles = tiles_of(march, view);
     backdrop_cpu_begin(workspace, march->backdrop, view);
-    struct cull_list list = cull_view(march->cull, view, CULL_FRONT_TO_BACK);
+    march_fars_begin(march->fars);
+    struct cells_list list = list_of(march, view, workspace->threads);
     bin(workspace, march, &picture, &tiles, &list);
+    march_fars_make(march->fars, &picture, march->block);
     uint64_t lookups = 0;
 #pragma omp parallel num_threads(workspace->threads) reduction(+ : lookups)
     {
         struct canvas canvas;
         canvas.backdrop = march->backdrop;
         canvas.block = march->block;
-        canvas.fars = march->fars + fars_of_thread(march) * (size_t)omp_get_thread_num();
-        memset(canvas.fars, 0, fars_of_thread(march) * sizeof *canvas.fars);
 #pragma omp for schedule(dynamic, 1)
         for (size_t tile = 0; tile < tiles.count; tile++)
             lookups += tile_draw(march, &picture, &tiles, &list, tile, &canvas, target->pixels);
     }
     workspace->tally.lookups += lookups;
-    workspace->tally.bytes +=
-        march->scene->instances_count * 4 * sizeof(float) + list.count * sizeof *march->trees;
+    size_t spheres = march->cull ? march->scene->instances_count : 0;
+    workspace->tally.bytes += spheres * 4 * sizeof(float) + list.count * sizeof *march->trees;
     return STATUS_OK;
 }

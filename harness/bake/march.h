@@ -23,6 +23,7 @@ struct march_options {
     float bias;      /* added to the level of detail */
     float slab;      /* voxels; 0: trees are drawn whole */
     int tile_px;     /* side of a tile */
+    bool cells;      /* trees below a pixel are drawn by cells of many */
     const char *isa; /* a name of march_isas(), or plain C for what is not there; NULL: the last */
 };
 

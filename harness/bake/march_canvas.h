@@ -6,9 +6,8 @@
 
 enum { TILE_MAX = 64, TILE_BLOCKS_MAX = (TILE_MAX / MARCH_BLOCK) * (TILE_MAX / MARCH_BLOCK) };
 
-/* The first three are given. */
+/* The first two are given. */
 struct canvas {
-    struct march_far *fars; /* the thread's, made when first needed */
     struct backdrop_cpu *backdrop;
     march_block *block;
     struct march_rays blocks[TILE_BLOCKS_MAX];

@@ -13,15 +13,13 @@ static int16_t pixel_of(float at_px, int size_px)
     return (int16_t)(at_px > -2 ? at_px < (float)size_px ? at_px : (float)size_px + 1 : -2);
 }
 
-static void seen_between(struct march_seen *seen, int axis, float first, float last, int size_px)
+void march_seen_between(struct march_seen *seen, int axis, float first, float last, int size_px)
 {
     seen->low[axis] = pixel_of(first > 0 ? first : 0, size_px);
     seen->high[axis] = pixel_of(last < (float)(size_px - 1) ? last : (float)(size_px - 1), size_px);
 }
 
-/* The tree's middle: x and y in pixels from the first pixel's centre, and its depth. */
-static void middle_of(const struct march_view *picture, const struct march_tree *tree,
-                      float middle[3])
+void march_middle(const struct march_view *picture, const struct march_tree *tree, float middle[3])
 {
     const struct view *view = picture->view;
     const float *center = picture->species[tree->species].center_m;
@@ -39,10 +37,10 @@ static struct march_seen see_small(const struct march_view *picture, const struc
 {
     struct march_seen seen = {.level = MARCH_SPLAT};
     float middle[3];
-    middle_of(picture, tree, middle);
+    march_middle(picture, tree, middle);
     float x = floorf(middle[0]), y = floorf(middle[1]);
-    seen_between(&seen, 0, x, x + 1, picture->view->width_px);
-    seen_between(&seen, 1, y, y + 1, picture->view->height_px);
+    march_seen_between(&seen, 0, x, x + 1, picture->view->width_px);
+    march_seen_between(&seen, 1, y, y + 1, picture->view->height_px);
     return seen;
 }
 
@@ -61,8 +59,8 @@ struct march_seen march_see(const struct march_view *picture, const struct march
     struct march_box box = march_box_of(view, tree, species->voxels, seen.level);
     struct march_outline outline = march_outline_of(view, &box, picture->focal_px);
     for (int i = 0; i < 2 && outline.any; i++)
-        seen_between(&seen, i, ceilf(outline.low[i]), floorf(outline.high[i]),
-                     i ? view->height_px : view->width_px);
+        march_seen_between(&seen, i, ceilf(outline.low[i]), floorf(outline.high[i]),
+                           i ? view->height_px : view->width_px);
     return seen;
 }
 
@@ -202,7 +200,7 @@ void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t
     struct march_job job;
     const float middle = 0.5f * (FAR_SIDE - 1), voxel_m = voxels->levels[(int)level].voxel_m;
     march_job_fill(&away, &tree, (uint32_t)level, middle, middle, &job);
-    *far = (struct march_far){.made = true};
+    *far = (struct march_far){0};
     for (int at = 0; at < FAR_SIDE * FAR_SIDE; at += MARCH_RAYS) {
         struct march_rays rays = {.left = {0}};
         march_job_aim(&away, &tree, (float)(at / MARCH_BLOCK % FAR_SIDE),
@@ -223,21 +221,28 @@ void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t
     far->cover_m2 *= sides_m[0] * sides_m[1];
 }
 
-void march_splat_of(const struct march_view *picture, const struct march_tree *tree,
-                    const struct march_far *far, struct march_splat *splat)
+/* A rectangle's even spread cut to the pixels along an axis; returns the first. */
+static int splat_cut(float middle_px, float side_px, int *count, float shares[SPLAT_SIDE])
 {
-    float middle[3], clear = 1;
-    middle_of(picture, tree, middle);
-    float left = floorf(middle[0]), top = floorf(middle[1]);
-    float right = middle[0] - left, low = middle[1] - top;
-    float per_m = tree->scale * picture->focal_px / middle[2];
-    float area = far->cover_m2 * per_m * per_m;
-    const float shares[4] = {(1 - right) * (1 - low), right * (1 - low), (1 - right) * low,
-                             right * low};
-    splat->x_px = (int)left;
-    splat->y_px = (int)top;
+    float low = middle_px - 0.5f * side_px, high = middle_px + 0.5f * side_px;
+    float first = floorf(low + 0.5f);
+    *count = 0;
+    for (float at = first; at - 0.5f < high && *count < SPLAT_SIDE; at++) {
+        float length_px = fminf(high, at + 0.5f) - fmaxf(low, at - 0.5f);
+        shares[(*count)++] = length_px > 0 ? length_px / side_px : 0;
+    }
+    return (int)first;
+}
+
+void march_splat_place(const struct march_view *picture, const float middle[3],
+                       const float sides_px[2], float foot_y_m, const struct march_far *far,
+                       struct march_splat *splat)
+{
+    float clear = 1;
+    splat->x_px = splat_cut(middle[0], sides_px[0], &splat->columns, splat->across);
+    splat->y_px = splat_cut(middle[1], sides_px[1], &splat->rows, splat->along);
     splat->depth_m = middle[2];
-    splat->lift_m = tree->position_m[1] - picture->view->eye_m[1];
+    splat->lift_m = foot_y_m - picture->view->eye_m[1];
     if (picture->effects & EFFECT_FOG && picture->scene->fog.density_per_m > 0) {
         float x = (middle[0] - 0.5f * (float)picture->view->width_px) / picture->focal_px;
         float y = (middle[1] - 0.5f * (float)picture->view->height_px) / picture->focal_px;
@@ -246,6 +251,16 @@ void march_splat_of(const struct march_view *picture, const struct march_tree *t
     for (int c = 0; c < 3; c++)
         splat->rgb[c] =
             picture->scene->fog.color[c] + clear * (far->rgb[c] - picture->scene->fog.color[c]);
-    for (int k = 0; k < 4; k++)
-        splat->shares[k] = area * shares[k] < 1 ? area * shares[k] : 1;
+}
+
+void march_splat_of(const struct march_view *picture, const struct march_tree *tree,
+                    const struct march_far *far, struct march_splat *splat)
+{
+    static const float pixel[2] = {1, 1};
+    float middle[3];
+    march_middle(picture, tree, middle);
+    float per_m = tree->scale * picture->focal_px / middle[2];
+    march_splat_place(picture, middle, pixel, tree->position_m[1], far, splat);
+    splat->area_px2 = far->cover_m2 * per_m * per_m;
+    splat->is_many = false;
 }

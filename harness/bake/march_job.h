@@ -11,6 +11,7 @@
 struct march_species {
     const struct voxels *voxels;
     float center_m[3]; /* of the finest level's box, in the plant's axes */
+    float half_m[3];   /* its half extents */
     float radius_m;    /* of a sphere around it that holds the plant */
 };
 
@@ -52,21 +53,32 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
 void march_job_aim(const struct march_view *picture, const struct march_tree *tree, float x_px,
                    float y_px, float voxel_m, struct march_job *job);
 
+/* A tree's middle: x and y in pixels from the first pixel's centre, and its depth. */
+void march_middle(const struct march_view *picture, const struct march_tree *tree, float middle[3]);
+/* The pixels first..last, cut to the picture, along an axis. */
+void march_seen_between(struct march_seen *seen, int axis, float first, float last, int size_px);
+
 /* How a species, turned by a step, looks from far away in a direction. */
 struct march_far {
-    bool made;
     float cover_m2, rgb[3]; /* hidden of the screen's plane at its depth, for scale 1; radiance */
 };
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
                     float y_px, march_block *block, struct march_far *far);
 
-/* A tree that is hardly larger than a pixel: the shares of four pixels that it covers. */
+/* What is hardly larger than a pixel: spread evenly over a rectangle of the picture. */
+enum { SPLAT_SIDE = 6 };
 struct march_splat {
-    int x_px, y_px;        /* the upper left one */
-    float depth_m, lift_m; /* of its middle; of its foot above the eye */
+    int x_px, y_px, columns, rows; /* pixels that it touches, SPLAT_SIDE each way at most */
+    float across[SPLAT_SIDE], along[SPLAT_SIDE]; /* the share in a pixel: across x along */
+    float depth_m, lift_m;                       /* of its middle; of its foot above the eye */
     float rgb[3];
-    float shares[4]; /* upper left, upper right, lower left, lower right */
+    float area_px2; /* what it hides altogether */
+    bool is_many;   /* trees, which may hide each other */
 };
+/* All but its area. middle: as march_middle; sides: 1..SPLAT_SIDE - 1. */
+void march_splat_place(const struct march_view *picture, const float middle[3],
+                       const float sides_px[2], float foot_y_m, const struct march_far *far,
+                       struct march_splat *splat);
 void march_splat_of(const struct march_view *picture, const struct march_tree *tree,
                     const struct march_far *far, struct march_splat *splat);
 

@@ -11,7 +11,7 @@ struct march_tree {
     uint32_t species;
     uint32_t turn; /* rotation, in MARCH_TURNS steps */
 };
-enum { MARCH_TURNS = 32 };
+enum { MARCH_TURNS = 8 };
 
 /* One an instance. */
 void march_trees_fill(const struct scene *scene, struct march_tree *trees);
