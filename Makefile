@@ -18,8 +18,10 @@ CC := gcc
 endif
 CXX := $(if $(findstring clang,$(CC)),clang++,g++)
 
-BUILD := build/$(config)-$(notdir $(firstword $(CC)))$(if $(filter-out auto,$(gl)),-$(gl))
-GEN := $(BUILD)/gen
+# Objects are the same whichever GL back ends are built in; what is linked of them has a folder of its own.
+OBJ := build/$(config)-$(notdir $(firstword $(CC)))
+BUILD := $(OBJ)$(if $(filter-out auto,$(gl)),-$(gl))
+GEN := $(OBJ)/gen
 
 # What the wall needs, found by pkg-config where it knows it.
 PKG := libcjson libxxhash assimp
@@ -57,12 +59,12 @@ ARCHITECTURE := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
 MARCH_SKIP := $(if $(filter x86_64,$(ARCHITECTURE)),harness/bake/march_isa_any.c,$(addprefix harness/bake/march_,isa_x86.c avx2.c avx512.c))
 SOURCES := $(filter-out $(WALL_SKIP) $(MARCH_SKIP) harness/cli/treeline.c,$(sort $(wildcard harness/*/*.c))) \
     $(sort $(wildcard methods/*.c))
-GENERATED_C := $(GEN)/methods_builtin.c $(GEN)/gl_load.c $(GEN)/gl_backends.c
+GENERATED_C := $(GEN)/methods_builtin.c $(GEN)/gl_load.c $(BUILD)/gl_backends.c
 GENERATED_H := $(GEN)/gl_functions.inc $(GEN)/build_facts.h \
     $(patsubst methods/%.glsl,$(GEN)/%.glsl.h,$(wildcard methods/*.glsl)) \
     $(patsubst harness/bake/%.glsl,$(GEN)/%.glsl.h,$(wildcard harness/bake/*.glsl)) \
     $(patsubst harness/calibrate/%.glsl,$(GEN)/%.glsl.h,$(wildcard harness/calibrate/*.glsl))
-OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o) $(GENERATED_C:%.c=%.o)
+OBJECTS := $(SOURCES:%.c=$(OBJ)/%.o) $(GENERATED_C:%.c=%.o)
 ARCHIVE := $(BUILD)/libtreeline.a
 BINARY := $(BUILD)/treeline
 IMAGE_SO := $(BUILD)/treeline_image.so
@@ -75,7 +77,7 @@ TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(sort $(wildcard tests/test_*.c)
 all: $(BINARY) $(IMAGE_SO)
 	@ln -sfn $(BINARY) treeline
 
-$(BINARY): $(BUILD)/harness/cli/treeline.o $(ARCHIVE)
+$(BINARY): $(OBJ)/harness/cli/treeline.o $(ARCHIVE)
 	$(CC) $(LDFLAGS_ALL) -o $@ $< -Wl,--whole-archive $(ARCHIVE) -Wl,--no-whole-archive $(LIBS)
 
 # The C programs that load the shim have no C++ half of the undefined-behaviour sanitizer.
@@ -89,9 +91,9 @@ $(ARCHIVE): $(OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(BUILD)/harness/bake/march_avx2.o $(BUILD)/harness/bake/march_avx2.tidy: CFLAGS_ALL += -mavx2
-$(BUILD)/harness/bake/march_avx512.o $(BUILD)/harness/bake/march_avx512.tidy: CFLAGS_ALL += -mavx512f -mavx512dq -mavx512bw -mavx512vl
-$(BUILD)/%.o: %.c | $(GENERATED_H)
+$(OBJ)/harness/bake/march_avx2.o $(OBJ)/harness/bake/march_avx2.tidy: CFLAGS_ALL += -mavx2
+$(OBJ)/harness/bake/march_avx512.o $(OBJ)/harness/bake/march_avx512.tidy: CFLAGS_ALL += -mavx512f -mavx512dq -mavx512bw -mavx512vl
+$(OBJ)/%.o: %.c | $(GENERATED_H)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) -c -o $@ $<
 
@@ -140,7 +142,9 @@ $(GEN)/build_facts.h: FORCE
 .PHONY: FORCE
 FORCE:
 GL_BACKENDS := $(if $(GL_OSMESA),gl_osmesa) $(if $(GL_EGL),gl_egl_surfaceless gl_egl_device)
-$(GEN)/gl_backends.c: Makefile
+$(BUILD)/gl_backends.o: $(BUILD)/gl_backends.c | $(GENERATED_H)
+	$(CC) $(CFLAGS_ALL) -c -o $@ $<
+$(BUILD)/gl_backends.c: Makefile
 	@mkdir -p $(@D)
 	@{ echo '/* Generated: the GL back ends of this build. */'; echo '#include "wall/gl_load.h"'; \
 	for b in $(GL_BACKENDS); do echo "extern const struct gl_backend $$b;"; done; \
@@ -235,8 +239,8 @@ format:
 	clang-format -i $(FORMAT)
 
 # A stamp a file: all cores work, and a second lint reads only what changed (the object knows the headers).
-TIDY := $(patsubst %.c,$(BUILD)/%.tidy,$(SOURCES) harness/cli/treeline.c)
-$(BUILD)/%.tidy: %.c $(BUILD)/%.o .clang-tidy
+TIDY := $(patsubst %.c,$(OBJ)/%.tidy,$(SOURCES) harness/cli/treeline.c)
+$(OBJ)/%.tidy: %.c $(OBJ)/%.o .clang-tidy
 	@echo "clang-tidy $<"
 	@clang-tidy --quiet --warnings-as-errors='*' $< -- $(filter-out -MMD -MP,$(CFLAGS_ALL)) 2>$@.log || { cat $@.log; exit 1; }
 	@touch $@
@@ -253,4 +257,4 @@ tidy: $(TIDY)
 clean:
 	rm -rf build treeline
 
--include $(OBJECTS:.o=.d) $(TESTS:=.d) $(PLUGINS:.so=.d) $(BUILD)/harness/cli/treeline.d
+-include $(OBJECTS:.o=.d) $(TESTS:=.d) $(PLUGINS:.so=.d) $(OBJ)/harness/cli/treeline.d
