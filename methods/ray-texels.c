@@ -9,9 +9,10 @@ struct options {
 /* clang-format off */
 static const struct option table[] = {
     OPTION(struct options, resolution, 128, 1, 512, "", "voxels along a plant's longest extent"),
-    OPTION_WORD(struct options, model, 0, "sggx|isotropic|noma",
+    OPTION_WORD(struct options, model, 0, "sggx|isotropic|noma|visible",
                 "how leaves hide: by second moments in every direction; by a scalar density "
-                "(Kajiya-Kay), lit alike on all sides; by Noma's opacities along three axes"),
+                "(Kajiya-Kay), lit alike on all sides; by Noma's opacities along three axes; by the "
+                "mean of their normals, which lights them too"),
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
     OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),

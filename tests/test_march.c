@@ -229,6 +229,8 @@ static void test_march__every_instruction_set_gives_the_same_bits(void **state)
         }
         slabs[0].job.seen = slabs[0].job.lit = third;
         slabs[0].job.both.factors[3] = 0.01f;
+        slabs[0].job.by_mean = n % 2;
+        slabs[0].job.toward_eye[n % 3] = slabs[0].job.toward_sun[1] = 1;
         for (size_t isa = 0; isa < count; isa++) {
             slabs[isa] = slabs[0];
             slabs[isa].job.cells = slabs[isa].cells;
@@ -381,12 +383,14 @@ static void test_march__a_ball_of_leaves_covers_and_shines_as_traced(void **stat
 static void test_march__a_ball_of_leaves_covers_as_traced_by_every_model(void **state)
 {
     (void)state;
-    static const double most[] = {
-        [MARCH_SGGX] = 1.05, [MARCH_ISOTROPIC] = 1.1547, [MARCH_NOMA] = 1.05};
+    static const double most[] = {[MARCH_SGGX] = 1.05,
+                                  [MARCH_ISOTROPIC] = 1.1547,
+                                  [MARCH_NOMA] = 1.05,
+                                  [MARCH_VISIBLE] = 1.05};
     struct world world = world_of_balls(1, 3000, 0.25);
     double drawn[4], true_means[4];
     means_of(traced(&world, EFFECT_TWO_SIDED), true_means);
-    for (enum march_model model = MARCH_SGGX; model <= MARCH_NOMA; model++) {
+    for (enum march_model model = MARCH_SGGX; model <= MARCH_VISIBLE; model++) {
         struct march_options options = usual;
         options.model = model;
         means_of(march_picture(&world, &options, EFFECT_TWO_SIDED, 2), drawn);

@@ -45,6 +45,8 @@ static enum status species_fill(struct workspace *workspace, struct plant *plant
         return status;
     if (options->model == MARCH_NOMA)
         species->voxels = voxels_noma(workspace->arena, species->voxels);
+    if (options->model == MARCH_VISIBLE)
+        species->voxels = voxels_visible(workspace->arena, species->voxels);
     *bound = cull_bound_of(mesh);
     float square = 0;
     for (int i = 0; i < 3; i++) {

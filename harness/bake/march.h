@@ -13,6 +13,7 @@ enum march_model {
     MARCH_ISOTROPIC, /* as if the normals in a voxel pointed everywhere alike: a scalar density d,
                         transmittance exp(-d length) in every direction (Kajiya and Kay 1989) */
     MARCH_NOMA,      /* hides by the opacities of voxels_noma, is lit as with sggx */
+    MARCH_VISIBLE,   /* hides and is lit by the mean of its normals: voxels_visible */
 };
 
 struct march_options {

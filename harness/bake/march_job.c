@@ -98,12 +98,13 @@ static struct march_form form_isotropic(const float x[3], const float y[3])
 }
 
 static void light_fill(const struct march_view *picture, const struct march_tree *tree,
-                       const struct voxels *voxels, const float toward_eye[3],
-                       struct march_job *job)
+                       const struct voxels *voxels, struct march_job *job)
 {
     const struct scene *scene = picture->scene;
-    float toward_sun[3];
-    march_to_plant(tree, picture->view->sun_direction, 1, toward_sun);
+    const float *toward_eye = job->toward_eye, *toward_sun = job->toward_sun;
+    march_to_plant(tree, picture->view->sun_direction, 1, job->toward_sun);
+    job->by_mean = picture->options.model == MARCH_VISIBLE;
+    job->cosine = dot3(toward_eye, toward_sun);
     struct march_form (*form)(const float[3], const float[3]) =
         picture->options.model == MARCH_ISOTROPIC ? form_isotropic : form_of;
     job->hidden = form(toward_eye, toward_eye);
@@ -143,7 +144,6 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     const struct voxels *voxels = picture->species[tree->species].voxels;
     const struct voxels_level *grid = &voxels->levels[level];
     const float per_m = 1 / (tree->scale * grid->voxel_m);
-    float toward_eye[3];
     struct march_box box = march_box_of(picture->view, tree, voxels, level);
     job->cells = grid->cells;
     job->voxels = (const uint32_t *)(const void *)voxels->voxels;
@@ -155,12 +155,12 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     march_job_aim(picture, tree, x_px, y_px, grid->voxel_m, job);
     job->speed = sqrtf(dot3(job->first, job->first));
     for (int i = 0; i < 3; i++)
-        toward_eye[i] = -job->first[i] / job->speed;
+        job->toward_eye[i] = -job->first[i] / job->speed;
     job->near_m = picture->view->near_m;
     job->far_m = INFINITY;
     job->step = picture->options.step;
     job->stop = picture->options.stop;
-    light_fill(picture, tree, voxels, toward_eye, job);
+    light_fill(picture, tree, voxels, job);
     fog_fill(picture, &box, job);
 }
 

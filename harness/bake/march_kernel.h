@@ -4,6 +4,7 @@
 #define TREELINE_BAKE_MARCH_KERNEL_H
 
 #include "bake/march_parts.h"
+#include "bake/voxels_visible.h"
 
 #include <string.h>
 
@@ -68,31 +69,91 @@ struct lanes_sample {
     lanes rgb[3]; /* radiance toward the eye */
 };
 
+/* What voxels' normals give: how much hides, and of what is seen the mean |N.L|, and the mean N.L
+ * for N toward the eye. */
+struct lanes_facing {
+    lanes depth, even, toward;
+};
+
+static const float lanes_least = 1e-4f;
+
 /* The closures of voxels.h. */
+static inline struct lanes_facing facing_by_moments(const struct march_job *job,
+                                                    const lanes_int words[3])
+{
+    struct lanes_facing facing;
+    lanes entries[5], extinction;
+    memcpy(&extinction, &words[0], sizeof extinction);
+    matrix_entries(words[1], entries);
+    facing.depth =
+        extinction * lanes_sqrt(lanes_max(form_value(&job->hidden, entries), lanes_all(0)));
+    matrix_entries(words[2], entries);
+    lanes seen = lanes_max(form_value(&job->seen, entries), lanes_all(lanes_least));
+    lanes lit = lanes_max(form_value(&job->lit, entries), lanes_all(lanes_least));
+    facing.toward = form_value(&job->both, entries) / lanes_sqrt(seen);
+    facing.even = 0.63661977f * lanes_sqrt(lit) *
+                  arc_value(lanes_min(facing.toward * facing.toward / lit, lanes_all(1)));
+    return facing;
+}
+
+static inline lanes terms_value(const float terms[VISIBLE_TERMS], lanes x)
+{
+    lanes value = x * terms[VISIBLE_TERMS - 1];
+    for (int k = VISIBLE_TERMS - 1; k-- > 0;)
+        value = x * (terms[k] + value);
+    return value;
+}
+
+/* Those of voxels_visible.h: words[1] is not read. */
+static inline struct lanes_facing facing_by_mean(const struct march_job *job,
+                                                 const lanes_int words[3])
+{
+    const float *eye = job->toward_eye, *sun = job->toward_sun;
+    struct lanes_facing facing;
+    lanes extinction, n[3], square, to_eye, to_sun;
+    memcpy(&extinction, &words[0], sizeof extinction);
+    for (int i = 0; i < 3; i++)
+        n[i] = lanes_of(words[2] >> (10 * i) & 1023) * (1.0f / VISIBLE_ZERO) - 1;
+    square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    to_eye = n[0] * eye[0] + n[1] * eye[1] + n[2] * eye[2];
+    to_sun = n[0] * sun[0] + n[1] * sun[1] + n[2] * sun[2];
+    lanes rest = 1 - lanes_sqrt(square), per = 1 / square;
+    lanes side = terms_value(visible_side, rest), across = terms_value(visible_across, rest);
+    lanes least = lanes_all(lanes_least), along = (1 - 3 * across) * per;
+    lanes shown = lanes_max(side + (square - side) * per * to_eye * to_eye, least);
+    facing.depth = extinction * lanes_sqrt(shown / (square + 2 * side));
+    lanes seen = lanes_max(across + along * to_eye * to_eye, least);
+    lanes lit = lanes_max(across + along * to_sun * to_sun, least);
+    lanes both = across * job->cosine + along * to_eye * to_sun, product = seen * lit;
+    facing.toward = both / lanes_sqrt(shown);
+    facing.even = 0.63661977f * lanes_sqrt(product / shown) *
+                  arc_value(lanes_min(both * both / product, lanes_all(1)));
+    return facing;
+}
+
 static inline struct lanes_sample sample_voxels(const struct march_job *job, lanes_int at,
                                                 lanes_mask mask)
 {
     struct lanes_sample sample;
+    struct lanes_facing facing;
     lanes_int words[4];
-    for (int i = 0; i < 4; i++)
-        words[i] = lanes_gather(job->voxels + i, at, mask);
-    lanes entries[5], extinction;
-    memcpy(&extinction, &words[0], sizeof extinction);
-    matrix_entries(words[1], entries);
-    lanes zero = lanes_all(0);
-    sample.depth = extinction * lanes_sqrt(lanes_max(form_value(&job->hidden, entries), zero));
-    matrix_entries(words[2], entries);
-    const float least = 1e-4f;
-    lanes seen = lanes_max(form_value(&job->seen, entries), lanes_all(least));
-    lanes lit = lanes_max(form_value(&job->lit, entries), lanes_all(least));
-    lanes toward = form_value(&job->both, entries) / lanes_sqrt(seen);
+    words[0] = lanes_gather(job->voxels, at, mask);
+    words[2] = lanes_gather(job->voxels + 2, at, mask);
+    words[3] = lanes_gather(job->voxels + 3, at, mask);
     lanes_int color = words[3];
-    lanes evenness = 0.75f + lanes_of(color >> 24 & 15) * (1.0f / 60);
+    lanes evenness = lanes_all(1);
+    if (job->by_mean) {
+        facing = facing_by_mean(job, words);
+    } else {
+        words[1] = lanes_gather(job->voxels + 1, at, mask);
+        facing = facing_by_moments(job, words);
+        evenness = 0.75f + lanes_of(color >> 24 & 15) * (1.0f / 60);
+    }
+    sample.depth = facing.depth;
     lanes one_sided =
         lanes_max(lanes_of(color >> 28 & 15) * (1.0f / 15), lanes_all(job->one_sided));
-    lanes even =
-        0.63661977f * lanes_sqrt(lit) * arc_value(lanes_min(toward * toward / lit, lanes_all(1)));
-    lanes diffuse = lanes_max((even + 0.5f * one_sided * (toward - even)) / evenness, zero);
+    lanes diffuse = lanes_max(
+        (facing.even + 0.5f * one_sided * (facing.toward - facing.even)) / evenness, lanes_all(0));
     for (int c = 0; c < 3; c++)
         sample.rgb[c] = lanes_of(color >> (8 * c) & 255) * (job->shade[c] + job->sun[c] * diffuse);
     return sample;

@@ -30,6 +30,8 @@ struct march_job {
     float near_m, far_m, step, stop;
     struct march_form hidden;          /* w' S w */
     struct march_form seen, lit, both; /* w' M w, l' M l, w' M l */
+    bool by_mean; /* normals are known by their means alone, as voxels_visible.h has it */
+    float toward_eye[3], toward_sun[3], cosine; /* unit, in the plant's axes; between the two */
     float sun[3], shade[3]; /* radiance of a white voxel's byte: by the sun, by the sky */
     float one_sided;        /* 1: leaves are lit on the side of the sun alone */
     float clear, fog[3];    /* the share that fog leaves; what it adds */

@@ -61,6 +61,11 @@ enum status voxels_of_plant(struct arena *arena, struct plant *plant, int resolu
  * are; cells are shared. */
 const struct voxels *voxels_noma(struct arena *arena, const struct voxels *voxels);
 
+/* The same plant with the mean of each voxel's normals in their place (voxels_visible.h), in the
+ * word `normals`, and shapes to go with it: as large as hide along the three axes together what
+ * they hid. Cells are shared. */
+const struct voxels *voxels_visible(struct arena *arena, const struct voxels *voxels);
+
 /* A voxel unpacked, as the march does it. Matrices: xx, yy, zz, xy, xz, yz. */
 struct voxel_optics {
     float extinction, shape[6], normals[6], albedo[3], evenness, bark;
