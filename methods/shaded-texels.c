@@ -4,7 +4,7 @@
 
 struct options {
     int path, add, slices, resolution, cut, filter, samples;
-    float criterion, texel, near;
+    float criterion, texel, near, distant;
     bool dilate, interpolate, rough, facing, smooth;
 };
 
@@ -31,6 +31,9 @@ static const struct option table[] = {
            "leaves show the area that they turn to the eye, not to the front of the slices"),
     OPTION(struct options, dilate, 1, 0, 1, "",
            "empty texels get their neighbours' normals, and on path=naive their colours"),
+    OPTION(struct options, distant, 16, 0, 32, "px",
+           "at lod=auto, where the largest tree is smaller, trees are single pictures drawn by the CPU; "
+           "none on path=naive; 0: none"),
     OPTION(struct options, interpolate, 0, 0, 1, "",
            "up to four times the slices, by interpolation, where the criterion asks for more"),
     OPTION(struct options, smooth, 0, 0, 1, "",
@@ -77,6 +80,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .smooth = options->smooth,
         .criterion_px = fast || options->add == ADD_CRITERION ? options->criterion : 0,
         .texel_px = options->texel,
+        .distant_px = fast ? options->distant : 0,
     };
     struct stack *stack;
     enum status status = stack_prepare(workspace, scene, &request, &stack);

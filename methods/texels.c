@@ -11,7 +11,7 @@
 
 struct options {
     int path, source, views, criterion, slices, resolution, turns, ground, cut, filter, samples;
-    float gap, parallax, texel, near;
+    float gap, parallax, texel, near, distant;
     bool interpolate, smooth;
 };
 
@@ -42,6 +42,9 @@ static const struct option table[] = {
     OPTION(struct options, near, 1, 0, 16, "radii",
            "upright trees closer to the eye than so many of their radii are drawn by their triangles; "
            "none on path=naive"),
+    OPTION(struct options, distant, 16, 0, 32, "px",
+           "at lod=auto, where the largest tree is smaller, trees are single pictures drawn by the CPU; "
+           "none on path=naive; 0: none"),
     OPTION(struct options, interpolate, 0, 0, 1, "",
            "up to four times the slices, by interpolation, where the criterion asks for more"),
     OPTION(struct options, smooth, 0, 0, 1, "",
@@ -80,6 +83,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .criterion_px = c2 ? options->parallax : 0,
         .criterion_texels = c1 ? options->gap : 0,
         .texel_px = options->texel,
+        .distant_px = fast ? options->distant : 0,
         .turns = options->turns,
         .ground = (enum stack_ground)options->ground,
     };

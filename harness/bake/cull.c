@@ -114,6 +114,25 @@ struct cull_list cull_view(struct cull *cull, const struct view *view, enum cull
     return list;
 }
 
+struct cull_list cull_view_of(struct cull *cull, const struct view *view, enum cull_order order,
+                              const uint32_t *instances, size_t count)
+{
+    struct cull_list list = {0, cull->instances[0], cull->depths[0]};
+    const float *f = view->forward, *eye = view->eye_m;
+    float offset = f[0] * eye[0] + f[1] * eye[1] + f[2] * eye[2];
+    for (size_t i = 0; i < count; i++) {
+        size_t at = instances[i];
+        const float middle[3] = {cull->x[at], cull->y[at], cull->z[at]};
+        list.instances[list.count] = (uint32_t)at;
+        list.depths_m[list.count] = f[0] * middle[0] + f[1] * middle[1] + f[2] * middle[2] - offset;
+        list.count += view_sees_sphere(view, middle, cull->radius[at]);
+    }
+    if (order != CULL_AS_PLACED)
+        cull_sort(list.depths_m, list.instances, cull->depths[1], cull->instances[1], list.count,
+                  order == CULL_BACK_TO_FRONT);
+    return list;
+}
+
 void cull_group(struct cull *cull, struct cull_list *list, const uint32_t *groups,
                 size_t groups_count, uint32_t *first)
 {

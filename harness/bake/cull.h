@@ -41,6 +41,10 @@ struct cull_list {
 /* Trees whose spheres touch the frustum, sorted by depth (stable: ties stay as placed). */
 struct cull_list cull_view(struct cull *cull, const struct view *view, enum cull_order order);
 
+/* The same of some instances alone. */
+struct cull_list cull_view_of(struct cull *cull, const struct view *view, enum cull_order order,
+                              const uint32_t *instances, size_t count);
+
 /* Regroups a list: groups[k] < groups_count is the group of list->instances[k] (say species and
  * level). Within a group the order stays. first: groups_count + 1 values, where each group begins.
  */

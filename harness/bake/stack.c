@@ -53,6 +53,9 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
         status = stack_program(workspace, stack);
     if (status == STATUS_OK)
         status = nearby_prepare(workspace, scene, request->near_radii, &stack->nearby);
+    if (status == STATUS_OK && request->distant_px > 0 && workspace->lod == LOD_AUTO &&
+        request->ground == GROUND_UPRIGHT)
+        status = distant_prepare(workspace, scene, request->distant_px, &stack->distant);
     if (status != STATUS_OK)
         return status;
     struct cull_bound *bounds = ARENA_ARRAY(arena, struct cull_bound, scene->species_count + 1);
@@ -176,8 +179,12 @@ void stack_backdrop(struct workspace *workspace, struct stack *stack, const stru
 enum status stack_trees(struct workspace *workspace, struct stack *stack, const struct view *view)
 {
     struct gl *gl = workspace->gl;
-    struct cull_list list = cull_view(stack->cull, view, CULL_BACK_TO_FRONT);
+    struct cull_list list =
+        stack->distant ? distant_cull(stack->distant, stack->cull, view, CULL_BACK_TO_FRONT)
+                       : cull_view(stack->cull, view, CULL_BACK_TO_FRONT);
     nearby_take(stack->nearby, view, CULL_BACK_TO_FRONT, &list);
+    if (stack->distant)
+        distant_draw(workspace, stack->distant, view);
     struct fill fill = {0, 0};
     use_program(workspace, stack, view);
     tally_texels_begin(workspace);

@@ -10,6 +10,7 @@
 
 #include "bake/backdrop.h"
 #include "bake/cull.h"
+#include "bake/distant.h"
 #include "bake/nearby.h"
 #include "bake/slices.h"
 
@@ -46,6 +47,8 @@ struct stack_request {
     float criterion_px;     /* C2: parallax between two slices, px; 0: without it */
     float criterion_texels; /* C1: gap between two slices along them, texels; 0: without it */
     float texel_px;         /* mip level: texels are about this large on the picture */
+    float distant_px;       /* at lod=auto, where the largest tree is smaller, trees are pictures
+                               drawn by the CPU; 0: none is. Not on GROUND_BASE and GROUND_PATCH */
     enum stack_mix mix;
 };
 
@@ -87,6 +90,7 @@ struct stack {
     struct backdrop *backdrop;
     struct cull *cull;
     struct nearby *nearby;
+    struct distant *distant; /* NULL: no tree is */
     GLuint program, vertices, trees_buffer, quads_buffer;
     GLuint bends_buffer;      /* 0: upright */
     struct stack_bend *bends; /* of stack_bake.h, as trees */
