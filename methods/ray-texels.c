@@ -3,7 +3,7 @@
 
 struct options {
     int resolution, model, tile, cells, isa;
-    float stop, step, bias, slab;
+    float stop, step, bias, smooth, slab;
 };
 
 /* clang-format off */
@@ -16,6 +16,8 @@ static const struct option table[] = {
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
     OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
+    OPTION(struct options, smooth, 0, 0, 1, "levels",
+           "over which a level of detail turns into the next, both being drawn; 0: at once"),
     OPTION(struct options, slab, 0, 0, 16, "voxels",
            "where crowns interlock they are drawn together, in slabs so deep: when thin, Chiba's sum "
            "of densities; 0: each tree whole, the nearer first"),
@@ -42,6 +44,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .stop = options->stop,
         .step = options->step,
         .bias = options->bias,
+        .smooth = options->smooth,
         .slab = options->slab,
         .tile_px = options->tile,
         .cells = options->cells == 0,

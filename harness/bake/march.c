@@ -159,7 +159,7 @@ static void entry_see(struct march *march, const struct march_view *picture, int
     const struct march_tree *tree = &march->trees[entry];
     *seen = march_see(picture, tree, depth_m);
     if (march->spans)
-        march->spans[k] = march_span_of(picture, tree, seen->level);
+        march->spans[k] = march_span_of(picture, tree, seen->level + (seen->next > 0));
     if (seen->level == MARCH_SPLAT) {
         march_middle(picture, tree, middle);
         march_fars_ask(march->fars, thread, picture->view, tree->species, tree->turn, middle);

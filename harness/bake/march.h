@@ -22,6 +22,7 @@ struct march_options {
     float stop;      /* a ray ends when it lets through no more */
     float step;      /* voxels */
     float bias;      /* added to the level of detail */
+    float smooth;    /* levels over which one turns into the next; 0: at once */
     float slab;      /* voxels; 0: trees are drawn whole */
     int tile_px;     /* side of a tile */
     bool cells;      /* trees below a pixel are drawn by cells of many */

@@ -101,23 +101,32 @@ void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
             splat_pixel(canvas, splat, picture_rays, column, row);
 }
 
+/* What of a tree is drawn. */
+struct march_part {
+    float from_m, to_m;
+    uint32_t level;
+    float thinned;
+};
+
 static int block_clamp(int at, int across)
 {
     return at < 0 ? 0 : at >= across ? across - 1 : at;
 }
 
-void canvas_march(struct canvas *canvas, const struct march_view *picture,
-                  const struct march_tree *tree, const struct march_seen *seen, float from_m,
-                  float to_m)
+/* At a level, but for a share of its density. */
+static void march_level(struct canvas *canvas, const struct march_view *picture,
+                        const struct march_tree *tree, const struct march_seen *seen,
+                        const struct march_part *part)
 {
-    const float voxel_m = picture->species[tree->species].voxels->levels[seen->level].voxel_m;
+    const float voxel_m = picture->species[tree->species].voxels->levels[part->level].voxel_m;
     const float half = 0.5f * (float)(canvas->tile.stride - 1);
     const int from[2] = {canvas->tile.x_px, canvas->tile.y_px};
     int low[2], high[2];
     struct march_job job;
-    march_job_fill(picture, tree, seen->level, (float)from[0] + half, (float)from[1] + half, &job);
-    job.near_m = fmaxf(job.near_m, from_m);
-    job.far_m = to_m;
+    march_job_fill(picture, tree, part->level, (float)from[0] + half, (float)from[1] + half, &job);
+    job.near_m = fmaxf(job.near_m, part->from_m);
+    job.far_m = part->to_m;
+    job.thinned = part->thinned;
     for (int i = 0; i < 2; i++) {
         low[i] = block_clamp((seen->low[i] - from[i]) / MARCH_BLOCK, canvas->across);
         high[i] = block_clamp((seen->high[i] - from[i]) / MARCH_BLOCK, canvas->across);
@@ -132,4 +141,20 @@ void canvas_march(struct canvas *canvas, const struct march_view *picture,
             canvas->open[block] = canvas->block(&job, &canvas->blocks[block]);
             canvas->open_count -= !canvas->open[block];
         }
+}
+
+/* The two levels' transmittances multiply, so that the share of one in the exponent grows evenly.
+ */
+void canvas_march(struct canvas *canvas, const struct march_view *picture,
+                  const struct march_tree *tree, const struct march_seen *seen, float from_m,
+                  float to_m)
+{
+    const float next = (float)seen->next / 255;
+    struct march_part part = {from_m, to_m, seen->level, next};
+    march_level(canvas, picture, tree, seen, &part);
+    if (seen->next == 0)
+        return;
+    part.level++;
+    part.thinned = 1 - next;
+    march_level(canvas, picture, tree, seen, &part);
 }

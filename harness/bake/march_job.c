@@ -44,6 +44,13 @@ static struct march_seen see_small(const struct march_view *picture, const struc
     return seen;
 }
 
+/* Nothing of the coarser level up to 1 - smooth, all of it at 1. */
+static uint8_t next_share(float part, float smooth)
+{
+    float from = 1 - smooth;
+    return part > from ? (uint8_t)(255 * (part - from) / smooth) : 0;
+}
+
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
                             float depth_m)
 {
@@ -53,10 +60,12 @@ struct march_seen march_see(const struct march_view *picture, const struct march
     float radius_m = tree->scale * species->radius_m;
     if (depth_m - radius_m > view->near_m && radius_m * picture->focal_px < small_px * depth_m)
         return see_small(picture, tree);
-    struct march_seen seen = {{0, 0}, {-1, -1}, 0};
-    seen.level = (uint8_t)march_level_of(view, tree, species->voxels, picture->focal_px,
-                                         picture->options.bias, depth_m);
-    struct march_box box = march_box_of(view, tree, species->voxels, seen.level);
+    struct march_seen seen = {{0, 0}, {-1, -1}, 0, 0};
+    float detail = march_detail_of(view, tree, species->voxels, picture->focal_px,
+                                   picture->options.bias, depth_m);
+    seen.level = (uint8_t)detail;
+    seen.next = next_share(detail - floorf(detail), picture->options.smooth);
+    struct march_box box = march_box_of(view, tree, species->voxels, seen.level + (seen.next > 0));
     struct march_outline outline = march_outline_of(view, &box, picture->focal_px);
     for (int i = 0; i < 2 && outline.any; i++)
         march_seen_between(&seen, i, ceilf(outline.low[i]), floorf(outline.high[i]),
@@ -160,6 +169,7 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     job->far_m = INFINITY;
     job->step = picture->options.step;
     job->stop = picture->options.stop;
+    job->thinned = 0;
     light_fill(picture, tree, voxels, job);
     fog_fill(picture, &box, job);
 }

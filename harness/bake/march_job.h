@@ -33,6 +33,7 @@ enum { MARCH_SPLAT = 255 };
 struct march_seen {
     int16_t low[2], high[2];
     uint8_t level;
+    uint8_t next; /* share of 255 that is drawn at the next coarser level */
 };
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
                             float depth_m);

@@ -207,6 +207,7 @@ static inline bool march_lanes(const struct march_job *job, struct march_rays *r
     lanes rgb[3];
     for (int c = 0; c < 3; c++)
         rgb[c] = lanes_load(rays->rgb[c] + first);
+    const float depth_per = job->speed * (1 - job->thinned);
     int lookups = 0;
     do {
         lanes length = lanes_min(step, end - at), middle = at + 0.5f * length;
@@ -216,7 +217,7 @@ static inline bool march_lanes(const struct march_job *job, struct march_rays *r
         lookups += lanes_count(alive) + 2 * lanes_count(full);
         if (lanes_any(full)) {
             struct lanes_sample sample = sample_voxels(job, behind << 2, full);
-            lanes pass = lanes_fade(sample.depth * length * job->speed);
+            lanes pass = lanes_fade(sample.depth * length * depth_per);
             lanes share = lanes_pick(full, left - left * pass, lanes_all(0));
             left -= share;
             for (int c = 0; c < 3; c++)

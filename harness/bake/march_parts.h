@@ -28,6 +28,7 @@ struct march_job {
     float first[3], right[3], down[3]; /* rays, a metre along the view */
     float speed;                       /* length of a ray a metre along the view */
     float near_m, far_m, step, stop;
+    float thinned;                     /* share of all density that is left out */
     struct march_form hidden;          /* w' S w */
     struct march_form seen, lit, both; /* w' M w, l' M l, w' M l */
     bool by_mean; /* normals are known by their means alone, as voxels_visible.h has it */

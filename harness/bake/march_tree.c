@@ -39,13 +39,18 @@ void march_eye_of(const struct view *view, const struct march_tree *tree,
         eye[i] -= voxels->origin_m[i] / voxels->levels[level].voxel_m;
 }
 
+float march_detail_of(const struct view *view, const struct march_tree *tree,
+                      const struct voxels *voxels, float focal_px, float bias, float depth_m)
+{
+    float pixel_m = fmaxf(depth_m, view->near_m) / focal_px;
+    float level = log2f(pixel_m / (tree->scale * voxels->levels[0].voxel_m)) + bias;
+    return fminf(fmaxf(level, 0), (float)(voxels->levels_count - 1));
+}
+
 uint32_t march_level_of(const struct view *view, const struct march_tree *tree,
                         const struct voxels *voxels, float focal_px, float bias, float depth_m)
 {
-    float pixel_m = fmaxf(depth_m, view->near_m) / focal_px;
-    float level = floorf(log2f(pixel_m / (tree->scale * voxels->levels[0].voxel_m)) + bias);
-    float last = (float)(voxels->levels_count - 1);
-    return (uint32_t)fminf(fmaxf(level, 0), last);
+    return (uint32_t)march_detail_of(view, tree, voxels, focal_px, bias, depth_m);
 }
 
 static float dot3(const float a[3], const float b[3])

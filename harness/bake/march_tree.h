@@ -23,7 +23,10 @@ void march_to_plant(const struct march_tree *tree, const float world[3], float s
 void march_eye_of(const struct view *view, const struct march_tree *tree,
                   const struct voxels *voxels, uint32_t level, float per_m, float eye[3]);
 
-/* The level whose voxels are about as large as pixels. */
+/* The level whose voxels are as large as pixels, were there one for every size. */
+float march_detail_of(const struct view *view, const struct march_tree *tree,
+                      const struct voxels *voxels, float focal_px, float bias, float depth_m);
+/* The finer one of those beside it. */
 uint32_t march_level_of(const struct view *view, const struct march_tree *tree,
                         const struct voxels *voxels, float focal_px, float bias, float depth_m);
 
