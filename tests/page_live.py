@@ -164,6 +164,39 @@ def check_growth(browser, rows):
     check("the growth laws are Python's slopes", good, str(table)[:300])
 
 
+def check_limit(browser, rows):
+    def compare(wanted):
+        found = {d[0]: d for d in dots(browser, "live-limit")}
+        if set(found) != {rows.index(r) for r in wanted}:
+            return False
+        reached = [1 / number(r["frame_seconds"]) for r in wanted]
+        allowed = [f / number(r["limit_fraction"]) for f, r in zip(reached, wanted)]
+        at = [found[rows.index(r)] for r in wanted]
+        rising = lambda values, places: [p for _, p in sorted(zip(values, places))] == sorted(places)
+        return (is_logarithmic([d[1] for d in at], allowed) and is_logarithmic([d[2] for d in at], reached)
+                and rising(allowed, [d[1] for d in at]) and rising([-v for v in reached], [d[2] for d in at]))
+
+    drawn = [r for r in rows if r["scene"] == "poplar-forest" and r["trees"] == "1000" and r["limit_fraction"]]
+    check("every cell with a limit stands on the chart of limits", len(drawn) > 3 and compare(drawn), [len(drawn)])
+    check("two resources bind them", {r["bound_by"] for r in drawn} == {"fill", "samples"})
+    notes = browser.run("Array.from(document.querySelectorAll('#live-limit text.note'), (text) => text.textContent)")
+    check("the line and its shares are named", {"the machine's limit", "1/2", "1/10"} <= set(notes), notes)
+    check("and a point by what binds it", {"fill", "samples"} <= set(notes), notes)
+    name = "billboards"
+    chip = f"Array.from(document.querySelectorAll('#live-limit .chip')).find((chip) => chip.textContent.includes('{name}')).click()"
+    browser.run(chip)
+    check("a name switches its method off there", compare([r for r in drawn if r["method"] != name]))
+    browser.run(chip)
+    check("and on again", compare(drawn))
+    first = dots(browser, "live-limit")[0][0]
+    browser.hover(f"#live-limit .dot[href='#cell-{first + 1}']")
+    card = browser.run("document.querySelector('.hover-card').textContent")
+    check("hovering tells the limit", rows[first]["bound_by"] in card, card)
+    browser.click(f"#live-limit .dot[href='#cell-{first + 1}']")
+    check("a click on it leads to the cell", browser.run("location.hash") == f"#cell-{first + 1}")
+    browser.click(".sheet .chip")
+
+
 def check_bars(browser, rows):
     of = {rows.index(r): r for r in group(rows, "poplar-forest", 1000)}
     found = browser.run("""Array.from(document.querySelectorAll("#live-split .bar-row"), (row) => [Number(row.querySelector("a").getAttribute("href").slice(6)) - 1,
@@ -385,6 +418,7 @@ def main():
         check_trade(browser, rows)
         check_hover(browser, rows)
         check_growth(browser, rows)
+        check_limit(browser, rows)
         check_bars(browser, rows)
         check_slider(browser)
         check_table(browser, rows)

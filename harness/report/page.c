@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* The script's parts, in this order. */
-static const char *const scripts[] = {"kit.js",  "chart.js",   "plots.js", "bars.js",
+static const char *const scripts[] = {"kit.js",  "chart.js",   "plots.js", "limits.js", "bars.js",
                                       "cell.js", "compare.js", "table.js", "page.js"};
 
 static enum status load_template(const struct page *page, const char *name, const char **text,
@@ -176,7 +176,10 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
         [FIGURE_ELEVATION] = "0: from the side, 90: from straight above. One point a view; error "
                              "of the representation.",
         [FIGURE_AZIMUTH] = "One point a view; error of the representation.",
-        [FIGURE_ROOFLINE] = ("The nearer the line, the nearer the limit. Bars: 95 % intervals. A "
+        [FIGURE_LIMIT] = ("On the line a cell does all that the machine can of the resource that "
+                          "binds it, which stands beside its method; on the line 1/10, a tenth."),
+        [FIGURE_ROOFLINE] = ("The nearer the line, the nearer the limit; left of a bend that is "
+                             "memory. Bars: 95 % intervals. A "
                              "point above it mixes large and small triangles."),
         [FIGURE_PAPER] = "On the line: the same ratio as printed. Bars: 95 % intervals.",
         [FIGURE_SWEEP] = "Along a line nothing else changes. Bars: 95 % intervals.",

@@ -53,6 +53,8 @@ void page_limit(const struct page *page)
         "the measured time is the fraction of the limit that the cell reaches: the column "
         "<i>of limit</i> of the results. The rest is shading, textures, and other work of the "
         "CPU.</p>\n");
+    page_live(page, "live-limit");
+    page_figures(page, FIGURE_LIMIT, FIGURE_LIMIT);
     page_figures(page, FIGURE_ROOFLINE, FIGURE_ROOFLINE);
     for (size_t i = 0; i < run->calibrations_count; i++)
         put_calibration(page, &run->calibrations[i]);

@@ -58,9 +58,19 @@ enum status plot_views(const struct book *book, const struct group *group, enum 
                        const char *folder, struct figure *figure, struct error *error);
 /* How many series of the same method come before this one: tells them apart by dashes. */
 int plot_variant(const struct book *book, size_t series);
-/* Triangles a second against their size, and the machine's roof, of a group. */
-enum status plot_roofline(const struct book *book, const struct group *group, const char *folder,
-                          struct figure *figure, struct error *error);
+/* Cells of a group under the machine's roof: frames a second of all of them; triangles a second
+ * against their size; other work against work a byte. */
+enum roofline_kind {
+    ROOFLINE_FRAMES,
+    ROOFLINE_TRIANGLES,
+    ROOFLINE_LOOKUPS,
+    ROOFLINE_SAMPLES,
+    ROOFLINE_RAYS,
+    ROOFLINES_COUNT
+};
+enum status plot_roofline(const struct book *book, const struct group *group,
+                          enum roofline_kind which, const char *folder, struct figure *figure,
+                          struct error *error);
 /* Ratios of ours against the printed ones of a paper. */
 struct paper_beside;
 enum status plot_paper(const struct book *book, const struct paper_beside *beside,

@@ -5,7 +5,12 @@
 #include "report/paper.h"
 #include "report/sweep.h"
 
-enum { FAMILIES_MAX = 6, KINDS_COUNT = 7, SWEEPS_MAX = 6, SWEEP_AXES = SWEEP_MEMORY + 1 };
+enum {
+    FAMILIES_MAX = 6,
+    KINDS_COUNT = 6 + ROOFLINES_COUNT,
+    SWEEPS_MAX = 6,
+    SWEEP_AXES = SWEEP_MEMORY + 1
+};
 
 /* Keeps the figure if something was drawn. */
 static void keep(struct figures *figures)
@@ -30,9 +35,11 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
                             &figures->list[figures->count], error);
         keep(figures);
     }
-    if (status == STATUS_OK)
-        status = plot_roofline(book, group, folder, &figures->list[figures->count], error);
-    keep(figures);
+    for (int kind = 0; kind < ROOFLINES_COUNT && status == STATUS_OK; kind++) {
+        status = plot_roofline(book, group, (enum roofline_kind)kind, folder,
+                               &figures->list[figures->count], error);
+        keep(figures);
+    }
     return status;
 }
 

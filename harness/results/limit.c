@@ -126,7 +126,7 @@ static struct interval seconds_add(struct interval a, struct interval b)
     return (struct interval){a.value + b.value, a.low + b.low, a.high + b.high};
 }
 
-static struct interval fastest_memory(const struct calibration *calibration)
+struct interval limit_memory_rate(const struct calibration *calibration)
 {
     static const enum calibration_index ways[] = {CALIBRATION_memory_read, CALIBRATION_memory_copy,
                                                   CALIBRATION_memory_triad};
@@ -184,7 +184,7 @@ static void bind_tally(struct limit *limit, const struct calibration *calibratio
                  .rate));
     bind(limit, LIMIT_SAMPLES,
          least_seconds(result->samples, measures[CALIBRATION_samples_bilinear].rate));
-    struct interval memory = least_seconds(result->moved_bytes, fastest_memory(calibration));
+    struct interval memory = least_seconds(result->moved_bytes, limit_memory_rate(calibration));
     limit->cached = memory.value > frame_seconds;
     if (!limit->cached)
         bind(limit, LIMIT_MEMORY, memory);

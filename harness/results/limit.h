@@ -64,6 +64,9 @@ struct limit limit_of_cell(const struct run *run, const struct result *const *re
  * unknown where there is none. */
 struct limit limit_of_tracing(const struct run *run, const struct tracing *tracing);
 
+/* The fastest way to move bytes, in 1/s. */
+struct interval limit_memory_rate(const struct calibration *calibration);
+
 /* Rate of triangles that shade so many fragments each, in 1/s, from the calibrated sizes:
  * interpolated in the logarithms of size and rate; below the smallest size in the time between it
  * and a culled one, above the largest by fill. */

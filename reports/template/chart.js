@@ -141,7 +141,7 @@ const listen = (root, points) => {
   });
 };
 
-// spec: x, y (axes), xTitle, yTitle, label, points, lines: [{color, points: [[x, y]], dash, steps}], rules.
+// spec: x, y (axes), xTitle, yTitle, label, points, lines: [{color, points: [[x, y]], dash, steps, note}], rules.
 const chart = (host, spec) => {
   const width = Math.max(280, host.clientWidth), height = Math.round(Math.min(Math.max(width * 0.56, 270), 470));
   const area = { left: 48, right: width - 10, top: 24, bottom: height - 44 };
@@ -154,6 +154,9 @@ const chart = (host, spec) => {
     const path = line.points.map(([x, y], i) =>
       i === 0 ? `M${area.toX(x)} ${area.toY(y)}` : line.steps ? `H${area.toX(x)}V${area.toY(y)}` : `L${area.toX(x)} ${area.toY(y)}`);
     root.append(draw("path", { class: "line", d: path.join(""), style: `color:var(--${line.color})`, "stroke-dasharray": line.dash || null }));
+    const [x, y] = line.points[line.points.length - 1];
+    if (line.note)
+      root.append(draw("text", { class: "note", x: area.toX(x) - 10, y: area.toY(y) + 1, "text-anchor": "end" }, line.note));
   }
   putPoints(root, area, spec.points);
   const write = noteWriter(area, spec.points.slice(0, 400).map(({ at: [x, y] }) => [x - 6, y - 6, x + 6, y + 6]));

@@ -58,6 +58,7 @@ startGrowth();
 startDistance();
 startAngles();
 startCost();
+startLimit();
 startCompare();
 startTable();
 document.documentElement.classList.add("js");
