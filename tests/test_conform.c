@@ -55,7 +55,7 @@ static enum status conform(struct arena *arena, const char *method, const char *
 /* What the sanitizers should see; the rest, with the large pictures, is tests/conform.sh's. */
 #define QUICK                                                                                      \
     "^(load|description|formats|bytes|sun-moved|state|memory|empty|one-tree|user-mesh|effects|"    \
-    "tiny|down|sun)$"
+    "tiny|down|sun|tally)$"
 
 static void all_pass(const char *name)
 {
@@ -66,7 +66,7 @@ static void all_pass(const char *name)
         if (rows.rows[i].result == CONFORM_FAILED || rows.rows[i].result == CONFORM_REFUSED)
             fail_msg("%s: %s: %s", name, rows.rows[i].check, rows.rows[i].message);
     assert_int_equal(status, STATUS_OK);
-    assert_int_equal(rows.count, 14);
+    assert_int_equal(rows.count, 15);
     arena_destroy(arena);
 }
 
@@ -182,6 +182,37 @@ static void test_conform__every_check_of_pictures_can_fail(void **unused)
     arena_destroy(arena);
 }
 
+static void test_conform__each_lie_about_a_tally_is_told_apart(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *way, *message;
+    } lies[] = {
+        {"impossible", "are more than any machine does"},
+        {"random", "a view counts 101 lookups, again 102"},
+        {"rays", "counts rays, which are the CPU's alone: it draws with OpenGL"},
+        {"timed", "counts lookups in a draw that is timed"},
+        {"flat", "a picture of four times the pixels counts 1000 samples, not more than 1000"},
+    };
+    struct arena *arena = arena_create(0);
+    struct rows rows;
+    for (size_t k = 0; k < sizeof lies / sizeof *lies; k++) {
+        setenv("TALLY", lies[k].way, 1);
+        enum status exit = conform(arena, plugin(arena, "lies-tally"), "^tally$", 60, &rows);
+        const struct conform_row *row = &rows.rows[0];
+        if (exit != STATUS_NONCONFORMING || rows.count != 1 || row->result != CONFORM_FAILED ||
+            row->status != STATUS_NONCONFORMING || !strstr(row->message, lies[k].message))
+            fail_msg("%s: exit %s, %zu rows: %s", lies[k].way, status_word(exit), rows.count,
+                     row->message);
+    }
+    unsetenv("TALLY");
+    assert_int_equal(conform(arena, plugin(arena, "lies-tally"), "^tally$", 60, &rows), STATUS_OK);
+    assert_int_equal(conform(arena, plugin(arena, "honest-cpu"), "^tally$", 60, &rows), STATUS_OK);
+    assert_non_null(strstr(rows.rows[0].message, "only its picture's bytes can bind it"));
+    assert_int_equal(conform(arena, plugin(arena, "counts"), "^tally$", 60, &rows), STATUS_OK);
+    arena_destroy(arena);
+}
+
 static void test_conform__a_refusal_with_a_reason_is_no_failure(void **unused)
 {
     (void)unused;
@@ -217,6 +248,7 @@ int main(void)
         cmocka_unit_test(test_conform__a_plugin_that_keeps_the_contract_passes),
         cmocka_unit_test(test_conform__each_way_to_misbehave_is_told_apart),
         cmocka_unit_test(test_conform__every_check_of_pictures_can_fail),
+        cmocka_unit_test(test_conform__each_lie_about_a_tally_is_told_apart),
         cmocka_unit_test(test_conform__a_refusal_with_a_reason_is_no_failure),
         cmocka_unit_test(test_conform__loading_a_plugin_that_dies_leaves_this_process_alive),
     };

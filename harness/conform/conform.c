@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 static const struct check *const groups[] = {checks_contract, checks_resources, checks_pictures,
-                                             checks_extremes};
+                                             checks_extremes, checks_tally};
 
 const char *conform_word(enum conform_result result)
 {

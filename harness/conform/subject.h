@@ -24,7 +24,7 @@ struct check {
 };
 /* Ends with a NULL name each. */
 extern const struct check checks_contract[], checks_resources[], checks_pictures[],
-    checks_extremes[];
+    checks_extremes[], checks_tally[];
 
 /* Tells the parent what begins, so that a crash names it. */
 void subject_say(const struct subject *subject, const char *format, ...)
