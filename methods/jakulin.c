@@ -143,7 +143,6 @@ const struct method jakulin_method = {
     .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG | TRAIT_STOCHASTIC,
     .options = table,
     .options_size = sizeof(struct options),
-    .supported = method_needs_no_stretch,
     .prepare = prepare,
     .draw = draw,
 };

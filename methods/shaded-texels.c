@@ -104,7 +104,6 @@ const struct method shaded_texels_method = {
     .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
     .options = table,
     .options_size = sizeof(struct options),
-    .supported = method_needs_no_stretch,
     .prepare = prepare,
     .draw = draw,
 };

@@ -26,10 +26,11 @@ static enum status stack_program(struct workspace *workspace, struct stack *stac
     const struct stack_request *request = &stack->request;
     struct arena *scratch = arena_create(0);
     const char *defines = arena_printf(
-        scratch, "%s%s%s%s%s%s%s%s%s", request->trilinear ? "TRILINEAR 1\n" : "",
+        scratch, "%s%s%s%s%s%s%s%s%s%s", request->trilinear ? "TRILINEAR 1\n" : "",
         request->straight ? "STRAIGHT 1\n" : "", request->rough ? "ROUGH 1\n" : "",
         request->interpolate ? "INTERPOLATE 1\n" : "", request->facing ? "FACING 1\n" : "",
         request->interpolate || request->smooth || request->mix != STACK_ONE ? "POWER 1\n" : "",
+        scene_is_stretched(stack->scene) ? "STRETCHED 1\n" : "",
         request->turns > 0 ? "LIT 1\n" : "", request->ground != GROUND_UPRIGHT ? "BENT 1\n" : "",
         workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
     enum status status =

@@ -13,6 +13,9 @@ layout(std430, binding = 0) readonly buffer trees_buffer { tree trees[]; };
 flat out float level;
 flat out vec3 leaf_light, bark_light;
 flat out vec2 power_albedo;
+#ifdef STRETCHED
+flat out float rise;
+#endif
 #ifdef FACING
 flat out vec3 to_eye, toward;
 #endif
@@ -61,6 +64,9 @@ void main()
     leaf_light = t.leaf_power.xyz;
     bark_light = t.bark_albedo.xyz;
     power_albedo = vec2(t.leaf_power.w, t.bark_albedo.w);
+#ifdef STRETCHED
+    rise = t.eye.w;
+#endif
 #ifdef FACING
     to_eye = t.eye.xyz;
     toward = t.toward_array.xyz;
@@ -73,6 +79,9 @@ layout(binding = 1) uniform sampler2DArray normal_map;  // 128 is 0; share of le
 flat in float level;
 flat in vec3 leaf_light, bark_light;
 flat in vec2 power_albedo;
+#ifdef STRETCHED
+flat in float rise;  // of normals: 1 / stretch
+#endif
 #ifdef FACING
 flat in vec3 to_eye, toward;
 #endif
@@ -117,11 +126,24 @@ vec4 fetch_normal(vec3 at)
 // Mean of |N.L| (two-sided leaves) or max(0, N.L) over the normals of a texel, of which the mean n is known. ROUGH: the
 // square of N.L has the mean (n.L)^2 + (1 - n.n) / 4.5, which is right where all N are n and where they lie on all
 // sides of a hemisphere; max(0, x) = (x + |x|) / 2.
+//
+// STRETCHED: a normal N of the plant is D N / |D N| in the tree, D = diag(1, 1 / stretch, 1). leaf_light and bark_light
+// hold D L, so that N.(D L) = (D N).L; what is left is to divide by |D N|. Where normals scatter, about their mean in
+// every direction alike, the mean of |D N|^2 is |D n|^2 + (1 - n.n) (2 + 1 / stretch^2) / 3, that of the scatter's share
+// of ((D N).L)^2 grows by |D L|^2.
 float light_of(vec4 n)
 {
-    float along = dot(n.xyz, mix(bark_light, leaf_light, n.w));
+    vec3 light = mix(bark_light, leaf_light, n.w);
+    float along = dot(n.xyz, light);
+    float scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0);
+#ifdef STRETCHED
+    vec3 tall = vec3(n.x, n.y * rise, n.z);
+    float square = max(dot(tall, tall) + scatter * (2.0 + rise * rise) / 3.0, 1e-6);
+    along *= inversesqrt(square);
+    scatter *= dot(leaf_light, leaf_light) / square;
+#endif
 #ifdef ROUGH
-    float size = sqrt(along * along + max(1.0 - dot(n.xyz, n.xyz), 0.0) / 4.5);
+    float size = sqrt(along * along + scatter / 4.5);
 #else
     float size = abs(along);
 #endif

@@ -21,10 +21,10 @@ struct stack_tree {
     float u_m[3], step;     /* along the picture's width; to the next slice's layer */
     float v_m[3], count;    /* along its height; slices */
     float w_m[3], level;    /* to the next slice; mip level */
-    float leaf_light[3];    /* plant's space: toward the sun */
+    float leaf_light[3];    /* plant's space: toward the sun, its y divided by the stretch */
     float power;            /* of each slice's transmittance */
     float bark_light[3], albedo_scale;
-    float eye[3], unused; /* plant's space: toward the eye, 1 long along toward */
+    float eye[3], rise; /* plant's space: toward the eye, 1 long along toward; 1 / stretch */
     float toward[3];
     uint32_t array; /* textures */
 };
@@ -48,7 +48,7 @@ struct stack_part {
     bool behind;
     float share;      /* of the tree's optical depth */
     float drawn;      /* slices; more than the level's are interpolated */
-    float distance_m; /* of the eye, plant's scale */
+    float distance_m; /* of the eye, of the world over the tree's scale */
     float to_eye[3];  /* plant's space: unit, from the box's middle */
 };
 

@@ -17,14 +17,22 @@ static void to_plant(const struct instance *instance, const float world[3], floa
     own[2] = world[0] * s + world[2] * c;
 }
 
-/* R_y(rotation) times a factor. */
+/* R_y(rotation) diag(1, stretch, 1) times a factor. */
 static void to_world(const struct instance *instance, const float own[3], float factor,
                      float world[3])
 {
     float c = cosf(instance->rotation_rad), s = sinf(instance->rotation_rad);
     world[0] = factor * (own[0] * c + own[2] * s);
-    world[1] = factor * own[1];
+    world[1] = factor * instance->stretch * own[1];
     world[2] = factor * (-own[0] * s + own[2] * c);
+}
+
+/* The same of what is squeezed back to the plant's height: a way of the world, or, as light is
+ * expressed for normals that are stretched the other way, the direction to the sun. */
+static void to_plant_squeezed(const struct instance *instance, const float world[3], float own[3])
+{
+    to_plant(instance, world, own);
+    own[1] /= instance->stretch;
 }
 
 /* What of a side the eye sees. */
@@ -32,14 +40,14 @@ struct seen {
     const struct stack_side *side;
     bool behind;
     float cosine;     /* between toward and the way to the eye, >= 0 */
-    float distance_m; /* to the box's middle, plant's scale */
+    float distance_m; /* to the box's middle, of the world over the tree's scale */
     float to_eye[3];  /* plant's axes, unit */
 };
 
-/* eye and forward: plant's axes. Within a crown it counts more where the eye looks than where it
- * is: from radius_m to the middle the one turns into the other. */
+/* eye and forward: plant's axes and height. Within a crown it counts more where the eye looks than
+ * where it is: from radius_m to the middle the one turns into the other. */
 static struct seen see(const struct stack_side *side, const float eye[3], const float forward[3],
-                       float radius_m)
+                       float stretch, float radius_m)
 {
     const struct slices_stack *frame = &side->frame;
     const float *axes[3] = {frame->right, frame->up, frame->toward};
@@ -55,17 +63,21 @@ static struct seen see(const struct stack_side *side, const float eye[3], const 
     for (int i = 0; i < 3; i++)
         for (int axis = 0; axis < 3; axis++)
             seen.to_eye[i] += along[axis] * axes[axis][i] / length;
+    float rise = seen.to_eye[1];
+    if (stretch != 1)
+        seen.distance_m *= sqrtf(1 + rise * rise * (stretch * stretch - 1));
     return seen;
 }
 
 /* The sides that face the eye (plant's axes and scale) most and second most, as Meyer and Neyret
  * 1998 choose. */
 static void best_sides(const struct stack *stack, const struct stack_plant *plant,
-                       const float eye[3], const float forward[3], struct seen best[2])
+                       const float eye[3], const float forward[3], float stretch,
+                       struct seen best[2])
 {
     best[0] = best[1] = (struct seen){.side = plant->sides, .cosine = -1};
     for (size_t d = 0; d < stack->request.bake.directions_count; d++) {
-        struct seen seen = see(&plant->sides[d], eye, forward, plant->bound.radius_m);
+        struct seen seen = see(&plant->sides[d], eye, forward, stretch, plant->bound.radius_m);
         if (seen.cosine > best[0].cosine) {
             best[1] = best[0];
             best[0] = seen;
@@ -174,10 +186,11 @@ int stack_parts(const struct stack *stack, const struct view *view, enum lod lod
     float away[3], eye[3], forward[3], focal = cull_focal_px(view);
     for (int i = 0; i < 3; i++)
         away[i] = (view->eye_m[i] - instance->position_m[i]) / instance->scale;
-    to_plant(instance, away, eye);
-    to_plant(instance, view->forward, forward);
+    to_plant_squeezed(instance, away, eye);
+    to_plant_squeezed(instance, view->forward, forward);
     struct seen best[2];
-    best_sides(stack, plant, eye, forward, best);
+    best_sides(stack, plant, eye, forward, instance->stretch, best);
+    focal *= fmaxf(1, instance->stretch); /* a metre of the plant appears at most so large */
     float other = 0;
     if (stack->request.smooth && best[1].cosine >= 0)
         other = fmaxf(0, 0.5f - (best[0].cosine - best[1].cosine) * STACK_BAND);
@@ -222,7 +235,8 @@ static void light_tree(const struct instance *instance, const struct stack_part 
                        const float sun[3], struct stack_tree *tree)
 {
     float own[3];
-    to_plant(instance, sun, own);
+    to_plant_squeezed(instance, sun, own);
+    tree->rise = 1 / instance->stretch;
     float along = dot(own, part->side->frame.toward);
     for (int i = 0; i < 3; i++) {
         tree->leaf_light[i] = part->behind ? -own[i] : own[i];
@@ -237,7 +251,9 @@ void stack_tree_fill(const struct stack *stack, const struct view *view,
     const struct stack_plant *plant = stack_plant_of(stack, instance);
     place_tree(instance, part, tree);
     light_tree(instance, part, view->sun_direction, tree);
-    float texel_px = cull_focal_px(view) * plant->texel_m / part->distance_m;
+    bool upright = part->side->frame.up[1] > 0.5f; /* then texels are stretched: by their area */
+    float focal_px = cull_focal_px(view) * (upright ? sqrtf(instance->stretch) : 1);
+    float texel_px = focal_px * plant->texel_m / part->distance_m;
     float mip = log2f(fmaxf(stack->request.texel_px / texel_px, 1));
     mip = stack->request.smooth ? mip : floorf(mip + 0.5f);
     tree->level = fminf(mip, (float)(stack->arrays[part->side->array].levels - 1));
