@@ -40,7 +40,7 @@ struct texels {
     float where[3];  /* the eye in voxels from the box's corner; of a small tree: its middle on
                         the screen, from pixel centres, px; its area, px^2 */
     float per_m;     /* voxels a metre; of a small tree: its depth along the view, m */
-    float turn[2];   /* cosine, sine */
+    float turn[2];   /* cosine, sine, both over the stretch */
     float clear;     /* what fog leaves */
     uint32_t albedo; /* three times 10 bits */
 };
@@ -153,7 +153,8 @@ static enum status make_program(struct workspace *workspace, const struct state 
 {
     struct arena *scratch = arena_create(0);
     const char *defines =
-        arena_printf(scratch, "FIRST 256u\nPROBES 2\n%s%s",
+        arena_printf(scratch, "FIRST 256u\nPROBES 2\n%s%s%s",
+                     scene_is_stretched(state->scene) ? "STRETCHED 1\n" : "",
                      state->options.model ? "ISOTROPIC 1\n" : "", counts ? "COUNT 1\n" : "");
     enum status status = gl_program(workspace->gl, "ray-texels-gl", ray_texels_gl_glsl, defines,
                                     program, workspace->error);
@@ -206,20 +207,26 @@ static void rect_between(struct tiles_rect *rect, int axis, float first, float l
 }
 
 /* A tree about as small as a pixel covers its share of the four pixels around its middle. */
-static void place_small(const struct picture *picture, const struct march_outline *outline,
-                        const struct march_box *box, float side_m, struct tiles_rect *rect,
-                        struct texels *texels)
+static void place_small(const struct picture *picture, const struct march_tree *tree,
+                        const struct march_outline *outline, const struct march_box *box,
+                        float side_m, struct tiles_rect *rect, struct texels *texels)
 {
     const struct view *view = picture->view;
     const float *forward = view->forward, *middle = box->middle_m;
     float depth = middle[0] * forward[0] + middle[1] * forward[1] + middle[2] * forward[2];
-    float side_px = picture->focal_px * side_m / depth;
+    float side_px = picture->focal_px * side_m / depth, stretch = tree->stretch;
+    /* a cube of the plant, seen along its axis w, covers stretch / |w stretched| of its side^2 */
+    float level_m2 = middle[0] * middle[0] + middle[2] * middle[2], rise_m2 = middle[1] * middle[1];
+    float cover =
+        stretch == 1
+            ? 1
+            : stretch * sqrtf((level_m2 + rise_m2 / (stretch * stretch)) / (level_m2 + rise_m2));
     for (int i = 0; i < 2; i++) {
         float first = floorf(outline->middle[i]);
         rect_between(rect, i, first, first + 1, i ? view->height_px : view->width_px);
         texels->where[i] = outline->middle[i];
     }
-    texels->where[2] = side_px * side_px;
+    texels->where[2] = side_px * side_px * cover;
     texels->per_m = depth;
 }
 
@@ -246,7 +253,7 @@ static void see(const struct state *state, const struct picture *picture, uint32
     const struct voxels_level *grid = &volume->levels[level];
     const float voxel_m = tree->scale * grid->voxel_m;
     if (small) {
-        place_small(picture, &outline, &box, voxel_m, rect, texels);
+        place_small(picture, tree, &outline, &box, voxel_m, rect, texels);
     } else {
         texels->per_m = 1 / voxel_m;
         march_eye_of(view, tree, volume, level, texels->per_m, texels->where);
@@ -268,8 +275,8 @@ static void see(const struct state *state, const struct picture *picture, uint32
     }
     texels->first_cell = state->first_cells[tree->species][level];
     texels->size = pack_10(grid->size) | (uint32_t)small << 30;
-    texels->turn[0] = tree->cosine;
-    texels->turn[1] = tree->sine;
+    texels->turn[0] = tree->cosine / tree->stretch;
+    texels->turn[1] = tree->sine / tree->stretch;
     texels->clear = march_box_clear(&box, picture->fog_density);
     texels->albedo = pack_10(albedo);
 }
@@ -416,7 +423,6 @@ const struct method ray_texels_gl_method = {
     .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
     .options = table,
     .options_size = sizeof(struct options),
-    .supported = method_needs_no_stretch,
     .prepare = prepare,
     .draw = draw,
 };

@@ -67,8 +67,9 @@ vec3 bytes(uint word)
     return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u);
 }
 
-// What is left of 1 behind `span` voxels of it (a), and its radiance.
-vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both)
+// What is left of 1 behind `span` voxels of it (a), and its radiance. raise: 1 / stretch^2 - 1; the light of a stretched
+// tree is divided by the length of its normals before they are unit (harness/bake/march_job.c).
+vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both, float raise)
 {
     float depth = uintBitsToFloat(words.x) * sqrt(max(value(eye, words.y), 0.0));
     float seen = max(value(eye, words.z), 1e-4), lit = max(value(sun, words.z), 1e-4);
@@ -76,6 +77,13 @@ vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both)
     float one_sided = max(float(words.w >> 28) / 15.0, limits.w);
     float even = 0.63661977 * sqrt(lit) * arc(min(toward * toward / lit, 1.0));
     float diffuse = (even + 0.5 * one_sided * (toward - even)) / (0.75 + float(words.w >> 24 & 15u) / 60.0);
+#ifdef STRETCHED
+#ifdef ISOTROPIC
+    diffuse *= inversesqrt(1.0 + raise / 3.0);
+#else
+    diffuse *= inversesqrt(1.0 + raise * float(words.z >> 6 & 63u) / 63.0);
+#endif
+#endif
     return vec4(bytes(words.w) * (ambient + sun_radiance * max(diffuse, 0.0)), exp(-depth * span));
 }
 
@@ -113,7 +121,18 @@ void main()
         uvec4 looks = texelFetch(trees, tree + 2);
         vec2 turn = uintBitsToFloat(looks.xy);
         float clear = uintBitsToFloat(looks.z);
+        float rise = 1.0, speed = stretch;  // 1 / the tree's stretch; in the plant, per metre along the view
+#ifdef STRETCHED
+        rise = length(turn);
+        turn /= rise;
+#endif
         vec3 u = rotate_y(ray, turn.x, -turn.y), l = rotate_y(sun_direction, turn.x, -turn.y);
+#ifdef STRETCHED
+        u.y *= rise;
+        l.y *= rise;
+        speed *= length(u);
+        u = normalize(u);
+#endif
         form f_eye = form_of(u, u), f_sun = form_of(l, l), f_both = form_of(-u, l);
         vec3 size = vec3(place.w & 1023u, place.w >> 10 & 1023u, place.w >> 20 & 1023u);
         vec3 white = vec3(looks.w & 1023u, looks.w >> 10 & 1023u, looks.w >> 20 & 1023u) / (1023.0 * 255.0);
@@ -131,7 +150,7 @@ void main()
             vec3 slow = mix(u, vec3(1e-10), lessThan(abs(u), vec3(1e-10)));
             vec3 one = -where.xyz / slow, other = (size - where.xyz) / slow;
             vec3 low = min(one, other), high = max(one, other);
-            float scale = stretch * where.w;
+            float scale = speed * where.w;
             float from = max(max(low.x, limits.x * scale), max(low.y, low.z));
             span = min(min(high.x, depth * scale), min(high.y, high.z)) - from;
             start = where.xyz + from * u;
@@ -161,7 +180,7 @@ void main()
             }
             bool empty = cell < FIRST;
             vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)), empty ? 0.0 : pace, f_eye,
-                                    f_sun, f_both);
+                                    f_sun, f_both, rise * rise - 1.0);
 #ifdef COUNT
             lookups += empty || pace == 0.0 ? 0u : 2u;
 #endif

@@ -70,7 +70,6 @@ const struct method ray_texels_method = {
     .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
     .options = table,
     .options_size = sizeof(struct options),
-    .supported = method_needs_no_stretch,
     .prepare = prepare,
     .draw = draw,
 };

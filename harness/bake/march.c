@@ -81,7 +81,7 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
         march->spans = ARENA_ARRAY(workspace->arena, struct march_span, scene->instances_count);
     march_trees_fill(scene, march->trees);
     march->fars = march_fars_create(workspace->arena, scene, march->trees, workspace->threads);
-    if (options->cells)
+    if (options->cells && !scene_is_stretched(scene)) /* cells know one shape of a species */
         march->cells = cells_create(workspace->arena, scene, bounds);
     else
         march->cull = cull_create(workspace->arena, scene, bounds);

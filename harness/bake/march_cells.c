@@ -17,7 +17,7 @@ void march_cell_middle(const struct march_view *picture, uint32_t species,
                        const struct cells_sums *sums, float middle[3])
 {
     /* turned every way, a plant's middle is over its foot */
-    struct march_tree mean = {.scale = sums->scale, .species = species};
+    struct march_tree mean = {.scale = sums->scale, .stretch = 1, .species = species};
     for (int i = 0; i < 3; i++)
         mean.position_m[i] = sums->foot_m[i];
     march_middle(picture, &mean, middle);

@@ -23,7 +23,7 @@ void march_middle(const struct march_view *picture, const struct march_tree *tre
 {
     const struct view *view = picture->view;
     const float *center = picture->species[tree->species].center_m;
-    float offset[3] = {center[0] * tree->cosine + center[2] * tree->sine, center[1],
+    float offset[3] = {center[0] * tree->cosine + center[2] * tree->sine, tree->stretch * center[1],
                        center[2] * tree->cosine - center[0] * tree->sine};
     for (int i = 0; i < 3; i++)
         offset[i] = tree->position_m[i] + tree->scale * offset[i] - view->eye_m[i];
@@ -58,7 +58,8 @@ struct march_seen march_see(const struct march_view *picture, const struct march
     const struct march_species *species = &picture->species[tree->species];
     const struct view *view = picture->view;
     float radius_m = tree->scale * species->radius_m;
-    if (depth_m - radius_m > view->near_m && radius_m * picture->focal_px < small_px * depth_m)
+    if (tree->stretch == 1 && depth_m - radius_m > view->near_m &&
+        radius_m * picture->focal_px < small_px * depth_m)
         return see_small(picture, tree);
     struct march_seen seen = {{0, 0}, {-1, -1}, 0, 0};
     float detail = march_detail_of(view, tree, species->voxels, picture->focal_px,
@@ -114,9 +115,12 @@ static void light_fill(const struct march_view *picture, const struct march_tree
     march_to_plant(tree, picture->view->sun_direction, 1, job->toward_sun);
     job->by_mean = picture->options.model == MARCH_VISIBLE;
     job->cosine = dot3(toward_eye, toward_sun);
+    job->sun_square = tree->stretch == 1 ? 1 : dot3(toward_sun, toward_sun);
+    job->raise = 1 / (tree->stretch * tree->stretch) - 1;
     struct march_form (*form)(const float[3], const float[3]) =
         picture->options.model == MARCH_ISOTROPIC ? form_isotropic : form_of;
     job->hidden = form(toward_eye, toward_eye);
+    job->upright = form((float[3]){0, 1, 0}, (float[3]){0, 1, 0});
     job->seen = job->hidden;
     job->lit = form(toward_sun, toward_sun);
     job->both = form(toward_eye, toward_sun);
@@ -186,7 +190,7 @@ void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t
     const float depth_m = 2000 * picture->species[species].radius_m;
     struct march_view away = *picture;
     struct march_tree tree = {
-        .cosine = cosf(angle), .sine = sinf(angle), .scale = 1, .species = species};
+        .cosine = cosf(angle), .sine = sinf(angle), .scale = 1, .stretch = 1, .species = species};
     struct march_box box = march_box_of(view, &tree, voxels, 0);
     float ray[3], sides_m[2];
     for (int i = 0; i < 3; i++)

@@ -73,6 +73,7 @@ struct lanes_sample {
  * for N toward the eye. */
 struct lanes_facing {
     lanes depth, even, toward;
+    lanes upright; /* of a stretched tree, the mean square of the normals' y in the plant */
 };
 
 static const float lanes_least = 1e-4f;
@@ -93,6 +94,7 @@ static inline struct lanes_facing facing_by_moments(const struct march_job *job,
     facing.toward = form_value(&job->both, entries) / lanes_sqrt(seen);
     facing.even = 0.63661977f * lanes_sqrt(lit) *
                   arc_value(lanes_min(facing.toward * facing.toward / lit, lanes_all(1)));
+    facing.upright = job->raise != 0 ? form_value(&job->upright, entries) : lanes_all(0);
     return facing;
 }
 
@@ -123,11 +125,12 @@ static inline struct lanes_facing facing_by_mean(const struct march_job *job,
     lanes shown = lanes_max(side + (square - side) * per * to_eye * to_eye, least);
     facing.depth = extinction * lanes_sqrt(shown / (square + 2 * side));
     lanes seen = lanes_max(across + along * to_eye * to_eye, least);
-    lanes lit = lanes_max(across + along * to_sun * to_sun, least);
+    lanes lit = lanes_max(across * job->sun_square + along * to_sun * to_sun, least);
     lanes both = across * job->cosine + along * to_eye * to_sun, product = seen * lit;
     facing.toward = both / lanes_sqrt(shown);
     facing.even = 0.63661977f * lanes_sqrt(product / shown) *
                   arc_value(lanes_min(both * both / product, lanes_all(1)));
+    facing.upright = across + along * n[1] * n[1];
     return facing;
 }
 
@@ -154,6 +157,8 @@ static inline struct lanes_sample sample_voxels(const struct march_job *job, lan
         lanes_max(lanes_of(color >> 28 & 15) * (1.0f / 15), lanes_all(job->one_sided));
     lanes diffuse = lanes_max(
         (facing.even + 0.5f * one_sided * (facing.toward - facing.even)) / evenness, lanes_all(0));
+    if (job->raise != 0)
+        diffuse /= lanes_sqrt(lanes_max(1 + job->raise * facing.upright, lanes_all(lanes_least)));
     for (int c = 0; c < 3; c++)
         sample.rgb[c] = lanes_of(color >> (8 * c) & 255) * (job->shade[c] + job->sun[c] * diffuse);
     return sample;

@@ -33,9 +33,13 @@ struct march_job {
     struct march_form seen, lit, both; /* w' M w, l' M l, w' M l */
     bool by_mean; /* normals are known by their means alone, as voxels_visible.h has it */
     float toward_eye[3], toward_sun[3], cosine; /* unit, in the plant's axes; between the two */
-    float sun[3], shade[3]; /* radiance of a white voxel's byte: by the sun, by the sky */
-    float one_sided;        /* 1: leaves are lit on the side of the sun alone */
-    float clear, fog[3];    /* the share that fog leaves; what it adds */
+    /* A stretched tree's toward_sun is not unit, its y divided by the stretch; a normal n becomes
+     * diag(1, 1 / stretch, 1) n, of the mean square 1 + raise M_yy. */
+    float sun_square, raise;
+    struct march_form upright; /* M_yy */
+    float sun[3], shade[3];    /* radiance of a white voxel's byte: by the sun, by the sky */
+    float one_sided;           /* 1: leaves are lit on the side of the sun alone */
+    float clear, fog[3];       /* the share that fog leaves; what it adds */
 };
 
 /* Marches a block's rays through a tree. False when nothing more can be seen through the block. */

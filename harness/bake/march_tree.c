@@ -13,18 +13,19 @@ void march_trees_fill(const struct scene *scene, struct march_tree *trees)
         tree->cosine = cosf(instance->rotation_rad);
         tree->sine = sinf(instance->rotation_rad);
         tree->scale = instance->scale;
+        tree->stretch = instance->stretch;
         tree->species = instance->species;
         float turns = instance->rotation_rad / 6.2831853f;
         tree->turn = (uint32_t)((turns - floorf(turns)) * MARCH_TURNS + 0.5f) % MARCH_TURNS;
     }
 }
 
-/* The inverse of instance_matrix's rotation. */
+/* The inverse of instance_matrix's rotation and stretch. */
 void march_to_plant(const struct march_tree *tree, const float world[3], float scale,
                     float plant[3])
 {
     plant[0] = scale * (world[0] * tree->cosine - world[2] * tree->sine);
-    plant[1] = scale * world[1];
+    plant[1] = scale * world[1] / tree->stretch;
     plant[2] = scale * (world[0] * tree->sine + world[2] * tree->cosine);
 }
 
@@ -43,7 +44,8 @@ float march_detail_of(const struct view *view, const struct march_tree *tree,
                       const struct voxels *voxels, float focal_px, float bias, float depth_m)
 {
     float pixel_m = fmaxf(depth_m, view->near_m) / focal_px;
-    float level = log2f(pixel_m / (tree->scale * voxels->levels[0].voxel_m)) + bias;
+    float voxel_m = tree->scale * sqrtf(tree->stretch) * voxels->levels[0].voxel_m;
+    float level = log2f(pixel_m / voxel_m) + bias;
     return fminf(fmaxf(level, 0), (float)(voxels->levels_count - 1));
 }
 
@@ -63,7 +65,7 @@ struct march_box march_box_of(const struct view *view, const struct march_tree *
 {
     const struct voxels_level *grid = &voxels->levels[level];
     const float c = tree->cosine, s = tree->sine;
-    const float axes[3][3] = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
+    const float axes[3][3] = {{c, 0, -s}, {0, tree->stretch, 0}, {s, 0, c}};
     struct march_box box;
     for (int i = 0; i < 3; i++)
         box.middle_m[i] = tree->position_m[i] - view->eye_m[i];

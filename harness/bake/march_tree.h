@@ -7,7 +7,7 @@
 #include "scene/scene.h"
 
 struct march_tree {
-    float position_m[3], cosine, sine, scale;
+    float position_m[3], cosine, sine, scale, stretch;
     uint32_t species;
     uint32_t turn; /* rotation, in MARCH_TURNS steps */
 };
@@ -16,7 +16,8 @@ enum { MARCH_TURNS = 8 };
 /* One an instance. */
 void march_trees_fill(const struct scene *scene, struct march_tree *trees);
 
-/* A vector of the world times scale, in the plant's axes. */
+/* A vector of the world times scale, in the plant's axes and height: a way, or, as light is
+ * expressed for normals that are stretched the other way, the direction to the sun. */
 void march_to_plant(const struct march_tree *tree, const float world[3], float scale,
                     float plant[3]);
 /* The eye in voxels of a level from the box's corner; per_m: voxels a metre. */

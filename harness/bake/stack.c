@@ -55,7 +55,7 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
     if (status == STATUS_OK)
         status = nearby_prepare(workspace, scene, request->near_radii, &stack->nearby);
     if (status == STATUS_OK && request->distant_px > 0 && workspace->lod == LOD_AUTO &&
-        request->ground == GROUND_UPRIGHT)
+        request->ground == GROUND_UPRIGHT && !scene_is_stretched(scene))
         status = distant_prepare(workspace, scene, request->distant_px, &stack->distant);
     if (status != STATUS_OK)
         return status;
