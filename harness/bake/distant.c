@@ -296,6 +296,7 @@ void distant_draw(struct workspace *workspace, struct distant *distant, const st
         mixed += strip_draw(distant, hides, low * DISTANT_BLOCK,
                             (end < view->width_px ? end : view->width_px) - 1);
     }
-    workspace->tally.lookups += 4 * mixed;
+    if (workspace->counted)
+        workspace->tally.lookups += 4 * mixed;
     blend(workspace, distant);
 }
