@@ -3,7 +3,7 @@
 
 struct options {
     int resolution, model, tile, cells, isa;
-    float stop, step, bias, smooth, slab;
+    float stop, step, bias, smooth, slab, far;
 };
 
 /* clang-format off */
@@ -21,6 +21,9 @@ static const struct option table[] = {
     OPTION(struct options, slab, 0, 0, 16, "voxels",
            "where crowns interlock they are drawn together, in slabs so deep: when thin, Chiba's sum "
            "of densities; 0: each tree whole, the nearer first"),
+    OPTION(struct options, far, 4, 0, 8, "px",
+           "trees of so large a radius are drawn from small pictures of the plants from far away, "
+           "larger ones marched; not with slabs"),
     OPTION(struct options, tile, 32, 8, 64, "px", "side of the tiles that trees are binned to"),
     OPTION_WORD(struct options, cells, 0, "auto|off",
                 "trees are culled by cells of many, and drawn so where they are below a pixel; off: "
@@ -47,6 +50,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .smooth = options->smooth,
         .slab = options->slab,
         .tile_px = options->tile,
+        .far_px = options->far,
         .cells = options->cells == 0,
         .isa = isas[options->isa],
     };

@@ -504,11 +504,12 @@ static void test_march__threads_tiles_and_instruction_sets_change_no_byte(void *
 
 /* Trees grow smaller than pixels: they cover what they covered, whichever way they are drawn. The
  * ball is nearly opaque: about its disc. Coarse voxels widen it, by less than half of one. */
-static void test_march__trees_of_a_pixel_and_below_cover_what_they_ought_to(void **state)
+static void far_ball_check(float far_px)
 {
-    (void)state;
+    struct march_options options = usual;
+    options.far_px = far_px;
     struct world world = world_of_balls(1, 20000, 0.25);
-    struct ready *ready = march_ready(&world, &usual, 0, 2);
+    struct ready *ready = march_ready(&world, &options, 0, 2);
     world.scene.camera.far_m = 1e6f;
     for (float distance = 300; distance < 20000; distance *= 1.7f) {
         double radius_px = 4 * 40 / tan(0.3) / (sqrt(1.26) * distance), drawn = 0;
@@ -527,6 +528,13 @@ static void test_march__trees_of_a_pixel_and_below_cover_what_they_ought_to(void
             fail_msg("at %g m: %g px, of a disc of %g to %g", (double)distance, drawn, low, high);
     }
     arena_destroy(world.arena);
+}
+
+static void test_march__trees_of_a_pixel_and_below_cover_what_they_ought_to(void **state)
+{
+    (void)state;
+    far_ball_check(0);
+    far_ball_check(4);
 }
 
 int main(void)

@@ -50,23 +50,35 @@ struct drawn {
     uint64_t lookups;
 };
 
-static struct drawn draw(struct world *world, bool cells, const char *isa, int threads)
+static struct drawn draw_far(struct world *world, bool cells, float far_px, const char *isa,
+                             int threads)
 {
+    const int width_px = world->view.width_px, height_px = world->view.height_px;
     struct error error = {0};
     struct workspace workspace = {.arena = world->arena,
                                   .error = &error,
                                   .effects = EFFECT_TWO_SIDED | EFFECT_AMBIENT,
                                   .threads = threads};
-    const struct march_options options = {
-        .resolution = 32, .stop = 0.02f, .step = 1, .tile_px = 16, .cells = cells, .isa = isa};
+    const struct march_options options = {.resolution = 32,
+                                          .stop = 0.02f,
+                                          .step = 1,
+                                          .tile_px = 16,
+                                          .far_px = far_px,
+                                          .cells = cells,
+                                          .isa = isa};
     struct march *march;
-    struct frame *frame = frame_create(world->arena, 96, 80, false);
-    struct target target = {96, 80, TARGET_RGBA32F, 0, 0, 0, frame->rgba};
+    struct frame *frame = frame_create(world->arena, width_px, height_px, false);
+    struct target target = {width_px, height_px, TARGET_RGBA32F, 0, 0, 0, frame->rgba};
     setenv("TREELINE_CACHE", "off", 1);
     if (march_prepare(&workspace, &world->scene, &options, &march) ||
         march_draw(&workspace, march, &world->view, &target))
         fail_msg("%s", error.text);
     return (struct drawn){frame->rgba, workspace.tally.lookups};
+}
+
+static struct drawn draw(struct world *world, bool cells, const char *isa, int threads)
+{
+    return draw_far(world, cells, 0, isa, threads);
 }
 
 static void means_of(const float *rgba, double means[4])
@@ -184,12 +196,63 @@ static void test_march_cells__hidden_trees_and_trees_outside_cost_no_lookup(void
     arena_destroy(world.arena);
 }
 
+/* Nine trees, each of a radius of some 3 pixels, elsewhere in its pixels; the sun from the side. */
+static struct world world_of_nine(int width_px, int height_px)
+{
+    struct world world = world_of_forest(9, 1, 7);
+    world.scene.width_px = width_px;
+    world.scene.height_px = height_px;
+    for (int i = 0; i < 9; i++) {
+        struct instance *tree = &world.scene.instances[i];
+        tree->position_m[0] = 11.3f * (float)(i % 3 - 1);
+        tree->position_m[2] = 17.7f * (float)(i / 3 - 1);
+        tree->rotation_rad = 0.7853982f * (float)i; /* as far pictures are turned */
+    }
+    world_look(&world, 0, 150, 250, 0, 2, 0);
+    world_sun(&world, 0.9, 0.3, 0.1);
+    return world;
+}
+
+/* What a pixel of a far picture shows is what the pixels in it show of the tree marched, larger. */
+static void
+test_march_cells__trees_of_a_few_pixels_show_the_mean_of_what_is_in_a_pixel(void **state)
+{
+    (void)state;
+    enum { TIMES = 8 };
+    struct world small = world_of_nine(96, 80), large = world_of_nine(96 * TIMES, 80 * TIMES);
+    struct drawn sprites = draw_far(&small, true, 8, NULL, 2);
+    struct drawn marched = draw_far(&small, true, 0, NULL, 2);
+    const float *fine = draw_far(&large, true, 0, NULL, 2).rgba;
+    double of_sprites = 0, of_marched = 0, covers = 0, means = 0;
+    assert_int_equal(sprites.lookups, 0); /* none was marched */
+    for (int i = 0; i < 96 * 80; i++)
+        for (int c = 0; c < 4; c++) {
+            double mean = 0;
+            for (int k = 0; k < TIMES * TIMES; k++)
+                mean += fine[4 * ((i / 96 * TIMES + k / TIMES) * 96 * TIMES + i % 96 * TIMES +
+                                  k % TIMES) +
+                             c];
+            mean /= TIMES * TIMES;
+            of_sprites += pow(sprites.rgba[4 * i + c] - mean, 2);
+            of_marched += pow(marched.rgba[4 * i + c] - mean, 2);
+            covers += c == 3 ? sprites.rgba[4 * i + c] : 0;
+            means += c == 3 ? mean : 0;
+        }
+    if (!(fabs(covers / means - 1) < 0.04 && of_sprites < 0.6 * of_marched))
+        fail_msg("cover %g of %g, squared error %g, marched %g", covers, means, of_sprites,
+                 of_marched);
+    arena_destroy(small.arena);
+    arena_destroy(large.arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_march_cells__a_far_forest_covers_what_trees_at_random_do),
         cmocka_unit_test(test_march_cells__a_far_forest_looks_as_its_trees_one_by_one),
         cmocka_unit_test(test_march_cells__threads_and_instruction_sets_change_no_byte),
+        cmocka_unit_test(
+            test_march_cells__trees_of_a_few_pixels_show_the_mean_of_what_is_in_a_pixel),
         cmocka_unit_test(test_march_cells__hidden_trees_and_trees_outside_cost_no_lookup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

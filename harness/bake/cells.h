@@ -16,7 +16,8 @@ struct cells_sums {
     float square;       /* sum of the scales' squares */
     float fourth;       /* sum of their fourth powers */
     float scale;        /* square root of the scales' mean square */
-};
+    uint32_t species;
+} __attribute__((aligned(64)));
 
 /* bounds: one for each species of the scene. */
 struct cells *cells_create(struct arena *arena, const struct scene *scene,
@@ -37,7 +38,6 @@ struct cells_list cells_view(struct cells *cells, const struct view *view, float
                              float tree_px, int threads);
 
 size_t cells_count(const struct cells *cells);
-uint32_t cells_species(const struct cells *cells, uint32_t cell);
 const struct cells_sums *cells_sums(const struct cells *cells, uint32_t cell);
 /* The trees of a cell, all of them; returns how many. */
 size_t cells_trees(const struct cells *cells, uint32_t cell, const uint32_t **instances);

@@ -144,6 +144,7 @@ static uint32_t node_build(struct cells *cells, struct item *items, uint32_t spe
     struct cells_node *node = &cells->nodes[number];
     struct cells_sums *sums = &cells->sums[number];
     *node = (struct cells_node){.begin = begin, .end = end, .species = species};
+    sums->species = species;
     if (end - begin <= CELLS_LEAF) {
         leaf_fill(cells, node, sums, items);
         return number;
@@ -213,11 +214,6 @@ struct cells *cells_create(struct arena *arena, const struct scene *scene,
 size_t cells_count(const struct cells *cells)
 {
     return cells->nodes_count;
-}
-
-uint32_t cells_species(const struct cells *cells, uint32_t cell)
-{
-    return cells->nodes[cell].species;
 }
 
 const struct cells_sums *cells_sums(const struct cells *cells, uint32_t cell)

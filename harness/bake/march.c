@@ -65,6 +65,7 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
     struct march *march = *result = ARENA_NEW(workspace->arena, struct march);
     march->scene = scene;
     march->options = *options;
+    march->options.far_px = options->slab > 0 ? 0 : options->far_px;
     march->block = block_named(options->isa);
     enum status status = backdrop_cpu_prepare(workspace, scene, &march->backdrop);
     march->species = ARENA_ARRAY(workspace->arena, struct march_species, scene->species_count);
@@ -133,9 +134,27 @@ static size_t places_of(uint32_t *first, const struct tiles *tiles, int threads)
     return sum;
 }
 
+/* Drawn from far pictures, not marched. */
+static bool is_splat(const struct march_seen *seen)
+{
+    return seen->level == MARCH_SPLAT || seen->level == MARCH_CELL || seen->level == MARCH_SPRITE;
+}
+
 static bool is_cell(const struct march *march, uint32_t entry)
 {
     return entry >= march->scene->instances_count;
+}
+
+/* Entries come by depth, not by place in memory: what will be needed soon is asked for early. */
+enum { SOON = 8 };
+static void entry_fetch(const struct march *march, const struct cells_list *list, size_t k)
+{
+    uint32_t entry = k < list->count ? list->entries[k] : 0;
+    if (is_cell(march, entry))
+        __builtin_prefetch(
+            cells_sums(march->cells, entry - (uint32_t)march->scene->instances_count));
+    else
+        __builtin_prefetch(&march->trees[entry]);
 }
 
 /* Where entry k of the list is seen; of a tree or cell below a pixel, what it is seen as is asked
@@ -147,20 +166,19 @@ static void entry_see(struct march *march, const struct march_view *picture, int
     float middle[3];
     if (is_cell(march, entry)) {
         uint32_t cell = entry - (uint32_t)march->scene->instances_count;
-        uint32_t species = cells_species(march->cells, cell);
         const struct cells_sums *sums = cells_sums(march->cells, cell);
-        march_cell_middle(picture, species, sums, middle);
-        *seen = march_cell_see(picture, species, sums, middle);
+        march_cell_middle(picture, sums, middle);
+        *seen = march_cell_see(picture, sums, middle);
         if (march->spans)
             march->spans[k] = (struct march_span){.near_m = middle[2], .far_m = middle[2]};
-        march_fars_ask(march->fars, thread, picture->view, species, MARCH_TURNS, middle);
+        march_fars_ask(march->fars, thread, picture->view, sums->species, MARCH_TURNS, middle);
         return;
     }
     const struct march_tree *tree = &march->trees[entry];
     *seen = march_see(picture, tree, depth_m);
     if (march->spans)
         march->spans[k] = march_span_of(picture, tree, seen->level + (seen->next > 0));
-    if (seen->level == MARCH_SPLAT) {
+    if (is_splat(seen)) {
         march_middle(picture, tree, middle);
         march_fars_ask(march->fars, thread, picture->view, tree->species, tree->turn, middle);
     }
@@ -181,6 +199,7 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
     for (int thread = 0; thread < threads; thread++) {
         size_t end = list->count * ((size_t)thread + 1) / (size_t)threads;
         for (size_t k = list->count * (size_t)thread / (size_t)threads; k < end; k++) {
+            entry_fetch(march, list, k + SOON);
             entry_see(march, picture, thread, list->entries[k], list->depths_m[k], k);
             tree_bin(tiles, &march->seen[k], march->tile_first + run * ((size_t)thread + 1), NULL,
                      0);
@@ -204,28 +223,29 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
     }
 }
 
-static bool is_splat(const struct march_seen *seen)
-{
-    return seen->level == MARCH_SPLAT || seen->level == MARCH_CELL;
-}
-
 static void entry_splat(const struct march *march, const struct march_view *picture, uint32_t entry,
-                        struct canvas *canvas)
+                        bool is_sprite, struct canvas *canvas)
 {
     struct march_splat splat;
     struct march_far far;
     float middle[3];
     if (is_cell(march, entry)) {
         uint32_t cell = entry - (uint32_t)march->scene->instances_count;
-        uint32_t species = cells_species(march->cells, cell);
         const struct cells_sums *sums = cells_sums(march->cells, cell);
-        march_cell_middle(picture, species, sums, middle);
-        far = march_fars_at(march->fars, picture->view, species, MARCH_TURNS, middle);
-        march_cell_splat(picture, species, sums, middle, &far, &splat);
+        march_cell_middle(picture, sums, middle);
+        far = march_fars_at(march->fars, picture->view, sums->species, MARCH_TURNS, middle);
+        march_cell_splat(picture, sums, middle, &far, &splat);
     } else {
         const struct march_tree *tree = &march->trees[entry];
         march_middle(picture, tree, middle);
         far = march_fars_at(march->fars, picture->view, tree->species, tree->turn, middle);
+        if (is_sprite) {
+            const struct march_far *its;
+            const struct march_sprite *sprite = march_fars_sprite(
+                march->fars, picture->view, tree->species, tree->turn, middle, &its);
+            canvas_sprite(canvas, picture, tree, sprite, its, &far);
+            return;
+        }
         march_splat_of(picture, tree, &far, &splat);
     }
     canvas_splat(canvas, &splat, &picture->rays);
@@ -296,8 +316,10 @@ static uint64_t tile_draw(const struct march *march, const struct march_view *pi
     const uint32_t end = march->tile_first[tile + 1];
     for (uint32_t at = march->tile_first[tile]; at < end && canvas->open_count; at++) {
         uint32_t k = march->entries[at];
+        entry_fetch(march, list, at + SOON < end ? march->entries[at + SOON] : k);
         if (is_splat(&march->seen[k])) {
-            entry_splat(march, picture, list->entries[k], canvas);
+            entry_splat(march, picture, list->entries[k], march->seen[k].level == MARCH_SPRITE,
+                        canvas);
         } else if (march->spans) {
             uint32_t last = interlocked_end(march, at, end);
             interlocked_draw(march, picture, list, at, last, canvas);

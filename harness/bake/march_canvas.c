@@ -56,9 +56,11 @@ void canvas_end(const struct canvas *canvas, float stop, const struct view *view
 
 /* A pixel's centre may see the ground before the tree that stands on it, since the tree is
  * elsewhere in the pixel: what hides the tree is nearer than the plane of its foot. */
-static bool splat_is_hidden(const struct march_splat *splat, const struct backdrop_rays *rays,
-                            float x_px, float y_px, float behind_m)
+bool canvas_hides(const struct march_splat *splat, const struct backdrop_rays *rays, float x_px,
+                  float y_px, float behind_m)
 {
+    if (behind_m > splat->depth_m)
+        return false;
     float rise = rays->first[1] + x_px * rays->right[1] + y_px * rays->down[1];
     float plane_m = splat->lift_m / rise;
     bool meets = plane_m > 0 && plane_m < splat->depth_m;
@@ -83,8 +85,8 @@ static void splat_pixel(struct canvas *canvas, const struct march_splat *splat,
         return;
     struct march_rays *rays = &canvas->blocks[y / MARCH_BLOCK * canvas->across + x / MARCH_BLOCK];
     int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
-    if (splat_is_hidden(splat, picture_rays, (float)(splat->x_px + column),
-                        (float)(splat->y_px + row), rays->depths_m[lane]))
+    if (canvas_hides(splat, picture_rays, (float)(splat->x_px + column), (float)(splat->y_px + row),
+                     rays->depths_m[lane]))
         return;
     float area = splat->area_px2 * splat->across[column] * splat->along[row];
     float share = rays->left[lane] * splat_share(splat, area);

@@ -22,6 +22,14 @@ struct canvas {
 void canvas_begin(struct canvas *canvas, const struct view *view, int x, int y, int side_px);
 void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
                   const struct backdrop_rays *picture_rays);
+/* A tree of a few pixels: a far picture of it, with what that hides and shines altogether (its)
+ * made to be what it ought to (far). */
+void canvas_sprite(struct canvas *canvas, const struct march_view *picture,
+                   const struct march_tree *tree, const struct march_sprite *sprite,
+                   const struct march_far *its, const struct march_far *far);
+/* Whether what is behind hides a splat from a pixel. */
+bool canvas_hides(const struct march_splat *splat, const struct backdrop_rays *picture_rays,
+                  float x_px, float y_px, float behind_m);
 /* What lies between two depths along the view, m. */
 void canvas_march(struct canvas *canvas, const struct march_view *picture,
                   const struct march_tree *tree, const struct march_seen *seen, float from_m,

@@ -12,12 +12,12 @@
 enum { MARCH_CELL = 254 }; /* a march_seen.level */
 
 /* The middle of its mean tree: x, y in pixels, depth. */
-void march_cell_middle(const struct march_view *picture, uint32_t species,
-                       const struct cells_sums *sums, float middle[3]);
-struct march_seen march_cell_see(const struct march_view *picture, uint32_t species,
-                                 const struct cells_sums *sums, const float middle[3]);
-void march_cell_splat(const struct march_view *picture, uint32_t species,
-                      const struct cells_sums *sums, const float middle[3],
-                      const struct march_far *far, struct march_splat *splat);
+void march_cell_middle(const struct march_view *picture, const struct cells_sums *sums,
+                       float middle[3]);
+struct march_seen march_cell_see(const struct march_view *picture, const struct cells_sums *sums,
+                                 const float middle[3]);
+void march_cell_splat(const struct march_view *picture, const struct cells_sums *sums,
+                      const float middle[3], const struct march_far *far,
+                      struct march_splat *splat);
 
 #endif

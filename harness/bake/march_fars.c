@@ -10,9 +10,10 @@ enum { CUTS = 4, SIDE = CUTS + 1, CORNERS = SIDE * SIDE, KINDS = MARCH_TURNS + 1
 struct march_fars {
     size_t species_count;
     int threads;
-    float *shares;         /* species x turns: of the trees' squared scales */
-    bool *asked;           /* threads x species x corners x kinds */
-    struct march_far *all; /* species x corners x kinds */
+    float *shares;                /* species x turns: of the trees' squared scales */
+    bool *asked;                  /* threads x species x corners x kinds */
+    struct march_far *all;        /* species x corners x kinds */
+    struct march_sprite *sprites; /* species x corners x turns */
 };
 
 struct march_fars *march_fars_create(struct arena *arena, const struct scene *scene,
@@ -25,6 +26,8 @@ struct march_fars *march_fars_create(struct arena *arena, const struct scene *sc
     fars->shares = ARENA_ARRAY(arena, float, scene->species_count *MARCH_TURNS);
     fars->asked = ARENA_ARRAY(arena, bool, size *(size_t)threads);
     fars->all = ARENA_ARRAY(arena, struct march_far, size);
+    fars->sprites =
+        ARENA_ARRAY(arena, struct march_sprite, scene->species_count * CORNERS * MARCH_TURNS);
     struct arena *passing = arena_create(0);
     double *sums = ARENA_ARRAY(passing, double, scene->species_count *KINDS);
     for (size_t i = 0; i < scene->instances_count; i++) {
@@ -110,7 +113,7 @@ void march_fars_make(struct march_fars *fars, const struct march_view *picture, 
                 march_far_fill(picture, species, (uint32_t)turn,
                                (float)(corner % SIDE) / CUTS * (float)view->width_px - 0.5f,
                                (float)(corner / SIDE) / CUTS * (float)view->height_px - 0.5f, block,
-                               &fars->all[place * KINDS + turn]);
+                               &fars->all[place * KINDS + turn], &fars->sprites[k]);
         }
 #pragma omp for schedule(static)
         for (size_t place = 0; place < places; place++)
@@ -135,4 +138,16 @@ struct march_far march_fars_at(const struct march_fars *fars, const struct view 
             far.rgb[c] += share * from->rgb[c];
     }
     return far;
+}
+
+const struct march_sprite *march_fars_sprite(const struct march_fars *fars, const struct view *view,
+                                             uint32_t species, uint32_t turn, const float at_px[2],
+                                             const struct march_far **means)
+{
+    float beyond[2];
+    size_t corner = corner_of(view, at_px, beyond);
+    corner += (beyond[0] > 0.5f) + (beyond[1] > 0.5f) * SIDE;
+    size_t place = species * CORNERS + corner;
+    *means = &fars->all[place * KINDS + turn];
+    return &fars->sprites[place * MARCH_TURNS + turn];
 }

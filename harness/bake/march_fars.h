@@ -21,4 +21,9 @@ void march_fars_make(struct march_fars *fars, const struct march_view *picture, 
 struct march_far march_fars_at(const struct march_fars *fars, const struct view *view,
                                uint32_t species, uint32_t turn, const float at_px[2]);
 
+/* The picture of one turn from the nearest of the directions, and its own means. */
+const struct march_sprite *march_fars_sprite(const struct march_fars *fars, const struct view *view,
+                                             uint32_t species, uint32_t turn, const float at_px[2],
+                                             const struct march_far **means);
+
 #endif

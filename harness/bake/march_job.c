@@ -44,6 +44,19 @@ static struct march_seen see_small(const struct march_view *picture, const struc
     return seen;
 }
 
+static struct march_seen see_sprite(const struct march_view *picture, const struct march_tree *tree,
+                                    float radius_m)
+{
+    struct march_seen seen = {.level = MARCH_SPRITE};
+    float middle[3];
+    march_middle(picture, tree, middle);
+    float reach_px = 0.5f + radius_m * picture->focal_px / middle[2];
+    for (int i = 0; i < 2; i++)
+        march_seen_between(&seen, i, ceilf(middle[i] - reach_px), floorf(middle[i] + reach_px),
+                           i ? picture->view->height_px : picture->view->width_px);
+    return seen;
+}
+
 /* Nothing of the coarser level up to 1 - smooth, all of it at 1. */
 static uint8_t next_share(float part, float smooth)
 {
@@ -58,9 +71,13 @@ struct march_seen march_see(const struct march_view *picture, const struct march
     const struct march_species *species = &picture->species[tree->species];
     const struct view *view = picture->view;
     float radius_m = tree->scale * species->radius_m;
-    if (tree->stretch == 1 && depth_m - radius_m > view->near_m &&
-        radius_m * picture->focal_px < small_px * depth_m)
-        return see_small(picture, tree);
+    if (tree->stretch == 1 && depth_m - radius_m > view->near_m) {
+        float radius_px = radius_m * picture->focal_px / depth_m;
+        if (radius_px < small_px)
+            return see_small(picture, tree);
+        if (radius_px < picture->options.far_px)
+            return see_sprite(picture, tree, radius_m);
+    }
     struct march_seen seen = {{0, 0}, {-1, -1}, 0, 0};
     float detail = march_detail_of(view, tree, species->voxels, picture->focal_px,
                                    picture->options.bias, depth_m);
@@ -178,11 +195,38 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     fog_fill(picture, &box, job);
 }
 
+enum { FAR_SIDE = 2 * SPRITE_SIDE };
+
+/* Adds a block of rays to the sums, and to the texels, of four rays each. */
+static void far_gather(const struct march_rays *rays, int column, int row, struct march_far *far,
+                       struct march_sprite *sprite)
+{
+    for (int lane = 0; lane < MARCH_RAYS; lane++) {
+        int x = (column + lane % MARCH_BLOCK) / 2, y = (row + lane / MARCH_BLOCK) / 2;
+        float *texel = sprite->sums[y + 1][x + 1], cover = 1 - rays->left[lane];
+        far->cover_m2 += cover;
+        texel[3] += 0.25f * cover;
+        for (int c = 0; c < 3; c++) {
+            far->rgb[c] += rays->rgb[c][lane];
+            texel[c] += 0.25f * rays->rgb[c][lane];
+        }
+    }
+}
+
 /* The box before the eye on the ray, far away, in FAR_SIDE x FAR_SIDE rays; what is covered in the
  * plane through its middle along the screen. Fog is left to each tree. */
-enum { FAR_SIDE = 16 };
+static void sprite_sum(struct march_sprite *sprite)
+{
+    for (int y = 1; y <= SPRITE_SIDE; y++)
+        for (int x = 1; x <= SPRITE_SIDE; x++)
+            for (int c = 0; c < 4; c++)
+                sprite->sums[y][x][c] += sprite->sums[y - 1][x][c] + sprite->sums[y][x - 1][c] -
+                                         sprite->sums[y - 1][x - 1][c];
+}
+
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
-                    float y_px, march_block *block, struct march_far *far)
+                    float y_px, march_block *block, struct march_far *far,
+                    struct march_sprite *sprite)
 {
     const float angle = 6.2831853f * (float)turn / MARCH_TURNS;
     const struct view *view = picture->view;
@@ -215,21 +259,20 @@ void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t
     const float middle = 0.5f * (FAR_SIDE - 1), voxel_m = voxels->levels[(int)level].voxel_m;
     march_job_fill(&away, &tree, (uint32_t)level, middle, middle, &job);
     *far = (struct march_far){0};
+    *sprite = (struct march_sprite){.sides_m = {FAR_SIDE * sides_m[0], FAR_SIDE * sides_m[1]}};
     for (int at = 0; at < FAR_SIDE * FAR_SIDE; at += MARCH_RAYS) {
+        const int column = at / MARCH_BLOCK % FAR_SIDE;
+        const int row = at / MARCH_BLOCK / FAR_SIDE * MARCH_BLOCK;
         struct march_rays rays = {.left = {0}};
-        march_job_aim(&away, &tree, (float)(at / MARCH_BLOCK % FAR_SIDE),
-                      (float)(at / MARCH_BLOCK / FAR_SIDE * MARCH_BLOCK), voxel_m, &job);
+        march_job_aim(&away, &tree, (float)column, (float)row, voxel_m, &job);
         for (int lane = 0; lane < MARCH_RAYS; lane++) {
             rays.left[lane] = 1;
             rays.depths_m[lane] = 2 * depth_m;
         }
         block(&job, &rays);
-        for (int lane = 0; lane < MARCH_RAYS; lane++) {
-            far->cover_m2 += 1 - rays.left[lane];
-            for (int c = 0; c < 3; c++)
-                far->rgb[c] += rays.rgb[c][lane];
-        }
+        far_gather(&rays, column, row, far, sprite);
     }
+    sprite_sum(sprite);
     for (int c = 0; c < 3; c++)
         far->rgb[c] = far->cover_m2 > 0 ? far->rgb[c] / far->cover_m2 : 0;
     far->cover_m2 *= sides_m[0] * sides_m[1];
@@ -248,20 +291,24 @@ static int splat_cut(float middle_px, float side_px, int *count, float shares[SP
     return (int)first;
 }
 
+float march_clear(const struct march_view *picture, const float middle[3])
+{
+    if (!(picture->effects & EFFECT_FOG) || !(picture->scene->fog.density_per_m > 0))
+        return 1;
+    float x = (middle[0] - 0.5f * (float)picture->view->width_px) / picture->focal_px;
+    float y = (middle[1] - 0.5f * (float)picture->view->height_px) / picture->focal_px;
+    return expf(-picture->scene->fog.density_per_m * middle[2] * sqrtf(1 + x * x + y * y));
+}
+
 void march_splat_place(const struct march_view *picture, const float middle[3],
                        const float sides_px[2], float foot_y_m, const struct march_far *far,
                        struct march_splat *splat)
 {
-    float clear = 1;
+    const float clear = march_clear(picture, middle);
     splat->x_px = splat_cut(middle[0], sides_px[0], &splat->columns, splat->across);
     splat->y_px = splat_cut(middle[1], sides_px[1], &splat->rows, splat->along);
     splat->depth_m = middle[2];
     splat->lift_m = foot_y_m - picture->view->eye_m[1];
-    if (picture->effects & EFFECT_FOG && picture->scene->fog.density_per_m > 0) {
-        float x = (middle[0] - 0.5f * (float)picture->view->width_px) / picture->focal_px;
-        float y = (middle[1] - 0.5f * (float)picture->view->height_px) / picture->focal_px;
-        clear = expf(-picture->scene->fog.density_per_m * middle[2] * sqrtf(1 + x * x + y * y));
-    }
     for (int c = 0; c < 3; c++)
         splat->rgb[c] =
             picture->scene->fog.color[c] + clear * (far->rgb[c] - picture->scene->fog.color[c]);

@@ -26,10 +26,11 @@ struct march_view {
     const struct march_species *species;
 };
 
-enum { MARCH_SPLAT = 255 };
+enum { MARCH_SPLAT = 255, MARCH_SPRITE = 253 };
 
 /* Where a tree is on the screen: pixels whose centres its box may cover, at a level; low above
- * high: none. Smaller than a pixel: level MARCH_SPLAT, the four pixels around its middle. */
+ * high: none. Smaller than a pixel: level MARCH_SPLAT, the four pixels around its middle; not much
+ * larger: MARCH_SPRITE, those that its sphere may touch. */
 struct march_seen {
     int16_t low[2], high[2];
     uint8_t level;
@@ -63,8 +64,17 @@ void march_seen_between(struct march_seen *seen, int axis, float first, float la
 struct march_far {
     float cover_m2, rgb[3]; /* hidden of the screen's plane at its depth, for scale 1; radiance */
 };
+/* The same as a small picture: what a rectangle of the screen's plane around its middle shows, as
+ * sums over all texels above and to the left (Crow 1984, doi:10.1145/800031.808600), row 0 on top:
+ * radiance times cover, cover. */
+enum { SPRITE_SIDE = 8 };
+struct march_sprite {
+    float sums[SPRITE_SIDE + 1][SPRITE_SIDE + 1][4];
+    float sides_m[2]; /* right, down; for scale 1 */
+} __attribute__((aligned(16)));
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
-                    float y_px, march_block *block, struct march_far *far);
+                    float y_px, march_block *block, struct march_far *far,
+                    struct march_sprite *sprite);
 
 /* What is hardly larger than a pixel: spread evenly over a rectangle of the picture. */
 enum { SPLAT_SIDE = 6 };
@@ -76,6 +86,8 @@ struct march_splat {
     float area_px2; /* what it hides altogether */
     bool is_many;   /* trees, which may hide each other */
 };
+/* The share that fog leaves of what is at a march_middle. */
+float march_clear(const struct march_view *picture, const float middle[3]);
 /* All but its area. middle: as march_middle; sides: 1..SPLAT_SIDE - 1. */
 void march_splat_place(const struct march_view *picture, const float middle[3],
                        const float sides_px[2], float foot_y_m, const struct march_far *far,
