@@ -130,7 +130,7 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
     struct triangles_frame frame = {
         .view = view, .drawn = view, .places = &middle, .cull = state->cull};
     triangles_draw(workspace, state->trunks, &frame, &list);
-    return stack_trees(workspace, state->foliage, view);
+    return stack_trees(workspace, state->foliage, view, target);
 }
 
 extern const struct method jakulin_method;

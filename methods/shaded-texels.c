@@ -3,7 +3,7 @@
 #include "method/method.h"
 
 struct options {
-    int path, add, slices, resolution, cut, filter, samples;
+    int path, add, front, slices, resolution, cut, filter, samples;
     float criterion, texel, near, distant;
     bool dilate, interpolate, rough, facing, smooth;
 };
@@ -12,8 +12,11 @@ struct options {
 static const struct option table[] = {
     OPTION_WORD(struct options, path, 1, "naive|fast",
                 "naive: as published, every slice a whole trilinear quad, a draw a tree"),
-    OPTION_WORD(struct options, add, 0, "nothing|batches|rectangles|bilinear|even|criterion|rough|facing",
+    OPTION_WORD(struct options, add, 0, "nothing|batches|rectangles|bilinear|even|criterion|rough|facing|front",
                 "to naive, one of what makes fast fast: to see what each gives"),
+    OPTION(struct options, front, 0, 0, 64, "",
+           "groups of trees drawn front to back, pixels closed after each where nothing more is seen; "
+           "0: back to front; add=front: 8"),
     OPTION(struct options, slices, 64, 1, 512, "", "slices along each of the three directions"),
     OPTION(struct options, resolution, 128, 8, 512, "px", "texels along a picture's longer side"),
     OPTION_WORD(struct options, cut, 1, "clip|centroid",
@@ -51,7 +54,8 @@ enum {
     ADD_EVEN,
     ADD_CRITERION,
     ADD_ROUGH,
-    ADD_FACING
+    ADD_FACING,
+    ADD_FRONT
 };
 
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
@@ -73,6 +77,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .trilinear = fast ? options->filter == 0 : options->add != ADD_BILINEAR,
         .rectangles = fast || options->add == ADD_RECTANGLES,
         .near_radii = fast ? options->near : 0,
+        .groups = !fast && options->add == ADD_FRONT ? 8 : options->front,
         .each = !fast && options->add != ADD_BATCHES,
         .rough = fast ? options->rough : options->add == ADD_ROUGH,
         .facing = fast ? options->facing : options->add == ADD_FACING,

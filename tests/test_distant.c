@@ -1,33 +1,12 @@
 /* Distant trees, pictures of a few pixels drawn by the CPU: against the ray-traced reference, and
  * the cells that hold them. */
-#include "testing_tree.h"
+#include "testing_stacks.h"
 
 #include "bake/distant_parts.h"
 
-static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
-
-struct fixture {
-    struct arena *arena;
-    struct plant *plant;
-    const struct method *method;
-};
-
 static int open_fixture(void **state)
 {
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    fixture->arena = arena_create(0);
-    fixture->plant = plant_from_mesh(fixture->arena, "lopsided", tree_mesh(fixture->arena, 400));
-    fixture->method = tree_method("shaded-texels");
-    *state = fixture;
-    return 0;
-}
-
-static int close_fixture(void **state)
-{
-    struct fixture *fixture = *state;
-    arena_destroy(fixture->arena);
-    free(fixture);
-    return 0;
+    return fixture_open(state, "shaded-texels");
 }
 
 /* The mean place of a picture's coverage, px. */

@@ -1,33 +1,12 @@
 /* Mixed stacks of foliage around a polygonal trunk: coverage, the order of crossing slices,
  * turning. */
-#include "testing_tree.h"
+#include "testing_stacks.h"
 
 #include "bake/stack_bake.h"
 
-static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
-
-struct fixture {
-    struct arena *arena;
-    struct plant *plant;
-    const struct method *method;
-};
-
 static int open_fixture(void **state)
 {
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    fixture->arena = arena_create(0);
-    fixture->plant = plant_from_mesh(fixture->arena, "lopsided", tree_mesh(fixture->arena, 400));
-    fixture->method = tree_method("jakulin");
-    *state = fixture;
-    return 0;
-}
-
-static int close_fixture(void **state)
-{
-    struct fixture *fixture = *state;
-    arena_destroy(fixture->arena);
-    free(fixture);
-    return 0;
+    return fixture_open(state, "jakulin");
 }
 
 static void check_coverage(struct fixture *f, const char *options, double allowed)

@@ -1,31 +1,10 @@
 /* Shaded texels against the ray-traced reference and closed forms: coverage from all sides, light,
  * fog, numbers of slices, and the borders of their use. */
-#include "testing_tree.h"
-
-static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
-
-struct fixture {
-    struct arena *arena;
-    struct plant *plant;
-    const struct method *method;
-};
+#include "testing_stacks.h"
 
 static int open_fixture(void **state)
 {
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    fixture->arena = arena_create(0);
-    fixture->plant = plant_from_mesh(fixture->arena, "lopsided", tree_mesh(fixture->arena, 400));
-    fixture->method = tree_method("shaded-texels");
-    *state = fixture;
-    return 0;
-}
-
-static int close_fixture(void **state)
-{
-    struct fixture *fixture = *state;
-    arena_destroy(fixture->arena);
-    free(fixture);
-    return 0;
+    return fixture_open(state, "shaded-texels");
 }
 
 /* A board of one kind, 6 m x 6 m, in the middle of what tree_view shows; its front (the side that

@@ -1,33 +1,10 @@
 /* Texels against the ray-traced reference and closed forms: baked light, its turns and its moves,
  * the criteria, boxes on the ground. */
-#include "testing_tree.h"
-
-static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
-
-struct fixture {
-    struct arena *arena;
-    struct mesh *mesh;
-    struct plant *plant;
-    const struct method *method;
-};
+#include "testing_stacks.h"
 
 static int open_fixture(void **state)
 {
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    fixture->arena = arena_create(0);
-    fixture->mesh = tree_mesh(fixture->arena, 400);
-    fixture->plant = plant_from_mesh(fixture->arena, "lopsided", fixture->mesh);
-    fixture->method = tree_method("texels");
-    *state = fixture;
-    return 0;
-}
-
-static int close_fixture(void **state)
-{
-    struct fixture *fixture = *state;
-    arena_destroy(fixture->arena);
-    free(fixture);
-    return 0;
+    return fixture_open(state, "texels");
 }
 
 /* Mean radiance of what is covered. */
@@ -149,6 +126,12 @@ static void test_texels__the_criteria_choose_the_number_of_slices(void **state)
                          wanted[k]);
         }
     }
+    /* By the tangent of the angle, which asks for 8 slices here, not by the sine, for 4. */
+    char options[160];
+    snprintf(options, sizeof options,
+             "path=naive,slices=32,resolution=16,turns=1,samples=1,criterion=c1,gap=%g",
+             size[2] * tan(angles[2]) / (4.6 * longest / 16));
+    assert_int_equal(slices_drawn(f, options, angles[2], 2000, false) - none, 8);
 }
 
 /* A terrain of 33 x 33 heights over 20 m about the tree. */

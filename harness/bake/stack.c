@@ -57,6 +57,8 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
     if (status == STATUS_OK && request->distant_px > 0 && workspace->lod == LOD_AUTO &&
         request->ground == GROUND_UPRIGHT && !scene_is_stretched(scene))
         status = distant_prepare(workspace, scene, request->distant_px, &stack->distant);
+    if (status == STATUS_OK && request->groups > 0)
+        status = stack_front_prepare(workspace, &stack->front);
     if (status != STATUS_OK)
         return status;
     struct cull_bound *bounds = ARENA_ARRAY(arena, struct cull_bound, scene->species_count + 1);
@@ -89,6 +91,10 @@ static void use_program(struct workspace *workspace, const struct stack *stack,
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, stack->quads_buffer);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, stack->bends_buffer);
     shade_uniforms(workspace, stack->program, stack->scene, view);
+    if (stack->front) {
+        stack_front_under(workspace);
+        return;
+    }
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     gl->DepthMask(GL_FALSE);
@@ -120,9 +126,9 @@ struct fill {
     size_t parts, quads;
 };
 
-/* One tree at the end of the batch. */
-static struct fill fill_tree(const struct stack *stack, const struct view *view, enum lod lod,
-                             const struct instance *instance, struct fill fill)
+/* One tree at the end of the batch, its farthest quad first. */
+static struct fill fill_behind(const struct stack *stack, const struct view *view, enum lod lod,
+                               const struct instance *instance, struct fill fill)
 {
     struct stack_part parts[PARTS_MOST];
     int count = stack_parts(stack, view, lod, instance, parts);
@@ -146,6 +152,21 @@ static struct fill fill_tree(const struct stack *stack, const struct view *view,
         fill.parts += (size_t)(end - first);
     }
     return fill;
+}
+
+/* In the order in which what is bound is drawn. */
+static struct fill fill_tree(const struct stack *stack, const struct view *view, enum lod lod,
+                             const struct instance *instance, struct fill fill)
+{
+    struct fill filled = fill_behind(stack, view, lod, instance, fill);
+    if (!stack->front)
+        return filled;
+    for (size_t low = fill.quads, high = filled.quads; low + 1 < high; low++, high--) {
+        struct stack_quad swap = stack->quads[low];
+        stack->quads[low] = stack->quads[high - 1];
+        stack->quads[high - 1] = swap;
+    }
+    return filled;
 }
 
 static void draw_batch(struct workspace *workspace, const struct stack *stack, struct fill fill)
@@ -177,34 +198,70 @@ void stack_backdrop(struct workspace *workspace, struct stack *stack, const stru
     workspace->gl->Flush(); /* a software GL fills it while the trees are culled and sorted */
 }
 
-enum status stack_trees(struct workspace *workspace, struct stack *stack, const struct view *view)
+/* Trees [first, end) of a list in its order. */
+static void draw_stacks(struct workspace *workspace, const struct stack *stack,
+                        const struct view *view, const struct cull_list *list, size_t first,
+                        size_t end)
 {
-    struct gl *gl = workspace->gl;
-    struct cull_list list =
-        stack->distant ? distant_cull(stack->distant, stack->cull, view, CULL_BACK_TO_FRONT)
-                       : cull_view(stack->cull, view, CULL_BACK_TO_FRONT);
-    nearby_take(stack->nearby, view, CULL_BACK_TO_FRONT, &list);
-    if (stack->distant)
-        distant_draw(workspace, stack->distant, view);
     struct fill fill = {0, 0};
     use_program(workspace, stack, view);
     tally_texels_begin(workspace);
-    for (size_t i = 0; i < list.count; i++) {
+    for (size_t i = first; i < end; i++) {
         if (fill.parts + PARTS_MOST > BATCH_PARTS ||
             fill.quads + PARTS_MOST * STACK_QUADS_MOST > BATCH_QUADS) {
             draw_batch(workspace, stack, fill);
             fill = (struct fill){0, 0};
         }
-        fill = fill_tree(stack, view, workspace->lod, &stack->scene->instances[list.instances[i]],
+        fill = fill_tree(stack, view, workspace->lod, &stack->scene->instances[list->instances[i]],
                          fill);
     }
     draw_batch(workspace, stack, fill);
     tally_texels_end(workspace,
                      (stack->request.turns > 0 ? 1 : 2) * (stack->request.interpolate ? 2 : 1),
                      false);
-    gl->Disable(GL_BLEND);
-    gl->DepthMask(GL_TRUE);
+    workspace->gl->Disable(GL_BLEND);
+    workspace->gl->DepthMask(GL_TRUE);
+}
+
+/* Groups of as many trees each. The triangles of near trees are in front of all. */
+static enum status draw_front_to_back(struct workspace *workspace, struct stack *stack,
+                                      const struct view *view, const struct target *target,
+                                      const struct cull_list *list)
+{
+    size_t groups = (size_t)stack->request.groups;
+    stack_front_begin(workspace, stack->front, target);
     enum status status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);
+    for (size_t group = 0; group < groups; group++) {
+        size_t first = list->count * group / groups, end = list->count * (group + 1) / groups;
+        if (first == end)
+            continue;
+        if (first > 0)
+            stack_front_close(workspace, stack->front);
+        draw_stacks(workspace, stack, view, list, first, end);
+    }
+    stack_front_end(workspace, stack->front, target);
+    workspace->gl->Disable(GL_BLEND);
+    workspace->gl->DepthMask(GL_TRUE);
+    return status;
+}
+
+enum status stack_trees(struct workspace *workspace, struct stack *stack, const struct view *view,
+                        const struct target *target)
+{
+    struct gl *gl = workspace->gl;
+    enum cull_order order = stack->front ? CULL_FRONT_TO_BACK : CULL_BACK_TO_FRONT;
+    struct cull_list list = stack->distant ? distant_cull(stack->distant, stack->cull, view, order)
+                                           : cull_view(stack->cull, view, order);
+    enum status status;
+    nearby_take(stack->nearby, view, order, &list);
+    if (stack->distant)
+        distant_draw(workspace, stack->distant, view);
+    if (stack->front) {
+        status = draw_front_to_back(workspace, stack, view, target, &list);
+    } else {
+        draw_stacks(workspace, stack, view, &list, 0, list.count);
+        status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);
+    }
     gl->BindVertexArray(0);
     gl->UseProgram(0);
     for (GLuint i = 0; i < 3; i++) {
@@ -221,5 +278,5 @@ enum status stack_draw(struct workspace *workspace, struct stack *stack, const s
     if (status != STATUS_OK)
         return status;
     stack_backdrop(workspace, stack, view, target);
-    return stack_trees(workspace, stack, view);
+    return stack_trees(workspace, stack, view, target);
 }

@@ -13,6 +13,7 @@
 #include "bake/distant.h"
 #include "bake/nearby.h"
 #include "bake/slices.h"
+#include "bake/stack_front.h"
 
 /* How boxes stand on the terrain: upright, as trees do; with the four points of their base on it;
  * with their tops as high above it along its normals (Meyer and Neyret 1998: boxes of 2 x 4 points
@@ -37,8 +38,9 @@ struct stack_request {
     bool rectangles;            /* quads hold only the occupied rectangle of a slice */
     float near_radii;           /* nearer trees are drawn by their triangles; 0: none */
     bool each;                  /* one draw a tree */
-    int turns; /* light is baked into the colours for trees turned by so many steps; 0: light in
-                  every fragment */
+    int groups; /* of trees, front to back, saturated pixels closed after each; 0: back to front */
+    int turns;  /* light is baked into the colours for trees turned by so many steps; 0: light in
+                   every fragment */
     enum stack_ground ground;
     bool rough;             /* normals that scatter in a texel spread its light */
     bool facing;            /* leaves show the area that they turn to the eye */
@@ -90,7 +92,8 @@ struct stack {
     struct backdrop *backdrop;
     struct cull *cull;
     struct nearby *nearby;
-    struct distant *distant; /* NULL: no tree is */
+    struct distant *distant;   /* NULL: no tree is */
+    struct stack_front *front; /* NULL: back to front */
     GLuint program, vertices, trees_buffer, quads_buffer;
     GLuint bends_buffer;      /* 0: upright */
     struct stack_bend *bends; /* of stack_bake.h, as trees */
@@ -106,8 +109,9 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
 /* Binds the target and draws the backdrop; a method may add what is opaque before the forest. */
 void stack_backdrop(struct workspace *workspace, struct stack *stack, const struct view *view,
                     struct target *target);
-/* The forest into what is bound. */
-enum status stack_trees(struct workspace *workspace, struct stack *stack, const struct view *view);
+/* The forest into the target, which is bound. */
+enum status stack_trees(struct workspace *workspace, struct stack *stack, const struct view *view,
+                        const struct target *target);
 /* Both. */
 enum status stack_draw(struct workspace *workspace, struct stack *stack, const struct view *view,
                        struct target *target);

@@ -1,0 +1,35 @@
+/* What the tests of stacks of slices begin with: the lopsided tree and the method that draws it. */
+#ifndef TREELINE_TESTS_TESTING_STACKS_H
+#define TREELINE_TESTS_TESTING_STACKS_H
+
+#include "testing_tree.h"
+
+static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
+
+struct fixture {
+    struct arena *arena;
+    struct mesh *mesh;
+    struct plant *plant;
+    const struct method *method;
+};
+
+static inline int fixture_open(void **state, const char *method)
+{
+    struct fixture *fixture = calloc(1, sizeof *fixture);
+    fixture->arena = arena_create(0);
+    fixture->mesh = tree_mesh(fixture->arena, 400);
+    fixture->plant = plant_from_mesh(fixture->arena, "lopsided", fixture->mesh);
+    fixture->method = tree_method(method);
+    *state = fixture;
+    return 0;
+}
+
+static inline int close_fixture(void **state)
+{
+    struct fixture *fixture = *state;
+    arena_destroy(fixture->arena);
+    free(fixture);
+    return 0;
+}
+
+#endif
