@@ -224,7 +224,7 @@ test_march_cells__trees_of_a_few_pixels_show_the_mean_of_what_is_in_a_pixel(void
     struct drawn marched = draw_far(&small, true, 0, NULL, 2);
     const float *fine = draw_far(&large, true, 0, NULL, 2).rgba;
     double of_sprites = 0, of_marched = 0, covers = 0, means = 0;
-    assert_int_equal(sprites.lookups, 0); /* none was marched */
+    assert_true(sprites.lookups > 0 && marched.lookups > 0);
     for (int i = 0; i < 96 * 80; i++)
         for (int c = 0; c < 4; c++) {
             double mean = 0;

@@ -330,7 +330,7 @@ static uint64_t tile_draw(const struct march *march, const struct march_view *pi
         }
     }
     canvas_end(canvas, march->options.stop, picture->view, pixels);
-    uint64_t lookups = 0;
+    uint64_t lookups = canvas->lookups;
     for (int block = 0; block < canvas->blocks_count; block++)
         lookups += canvas->blocks[block].lookups;
     return lookups;

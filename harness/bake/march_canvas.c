@@ -16,6 +16,7 @@ void canvas_begin(struct canvas *canvas, const struct view *view, int x, int y, 
         .rgb = canvas->rgb,
     };
     backdrop_cpu_tile(canvas->backdrop, &canvas->tile);
+    canvas->lookups = 0;
     canvas->across = side / MARCH_BLOCK;
     canvas->blocks_count = canvas->open_count = canvas->across * canvas->across;
     memset(canvas->blocks, 0, (size_t)canvas->blocks_count * sizeof *canvas->blocks);

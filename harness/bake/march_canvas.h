@@ -15,6 +15,7 @@ struct canvas {
     float depths_m[TILE_MAX * TILE_MAX];
     float rgb[TILE_MAX * TILE_MAX][3];
     struct backdrop_tile tile;
+    uint64_t lookups; /* of far pictures */
     int across, blocks_count, open_count;
 };
 
