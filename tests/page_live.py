@@ -188,6 +188,7 @@ def check_limit(browser, rows):
     check("a name switches its method off there", compare([r for r in drawn if r["method"] != name]))
     browser.run(chip)
     check("and on again", compare(drawn))
+    browser.settle()
     first = dots(browser, "live-limit")[0][0]
     browser.hover(f"#live-limit .dot[href='#cell-{first + 1}']")
     card = browser.run("document.querySelector('.hover-card').textContent")
