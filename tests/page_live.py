@@ -188,8 +188,9 @@ def check_limit(browser, rows):
     check("a name switches its method off there", compare([r for r in drawn if r["method"] != name]))
     browser.run(chip)
     check("and on again", compare(drawn))
-    browser.settle()
     first = dots(browser, "live-limit")[0][0]
+    browser.middle(f"#live-limit .dot[href='#cell-{first + 1}']") # the scroll, which hides a card
+    browser.settle()
     browser.hover(f"#live-limit .dot[href='#cell-{first + 1}']")
     card = browser.run("document.querySelector('.hover-card').textContent")
     check("hovering tells the limit", rows[first]["bound_by"] in card, card)
