@@ -2,7 +2,7 @@
 #include "bake/march.h"
 
 struct options {
-    int resolution, model, tile, cells, isa;
+    int resolution, model, tile, cells, isa, shadows;
     float stop, step, bias, smooth, slab, far;
 };
 
@@ -23,7 +23,9 @@ static const struct option table[] = {
            "of densities; 0: each tree whole, the nearer first"),
     OPTION(struct options, far, 4, 0, 8, "px",
            "trees of so large a radius are drawn from small pictures of the plants from far away, "
-           "larger ones marched; not with slabs"),
+           "larger ones marched; not with slabs or shadows"),
+    OPTION(struct options, shadows, 64, 0, 512, "",
+           "cells of the sun's shadows along a plant's longest extent; 0: the sun casts none"),
     OPTION(struct options, tile, 32, 8, 64, "px", "side of the tiles that trees are binned to"),
     OPTION_WORD(struct options, cells, 0, "auto|off",
                 "trees are culled by cells of many, and drawn so where they are below a pixel; off: "
@@ -33,6 +35,12 @@ static const struct option table[] = {
     OPTION_END,
 };
 /* clang-format on */
+
+static unsigned effects(const void *values)
+{
+    const struct options *options = values;
+    return EFFECTS_ALL & ~(unsigned)(options->shadows ? 0 : EFFECT_SUN_SHADOWS);
+}
 
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
                            const void *values, void **state)
@@ -52,6 +60,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .tile_px = options->tile,
         .far_px = options->far,
         .cells = options->cells == 0,
+        .shadow_resolution = options->shadows,
         .isa = isas[options->isa],
     };
     return march_prepare(workspace, scene, &march, (struct march **)state);
@@ -71,9 +80,10 @@ const struct method ray_texels_method = {
     .source = "Kajiya and Kay 1989, doi:10.1145/74334.74361; Neyret 1998, doi:10.1109/2945.675652; "
               "Noma 1995; Chiba et al. 1997; "
               "Heitz et al. 2015, doi:10.1145/2766988; Senegas 2001",
-    .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG,
     .options = table,
     .options_size = sizeof(struct options),
+    .effects = effects,
     .prepare = prepare,
     .draw = draw,
 };

@@ -115,7 +115,7 @@ static void plane_light(const struct backdrop_light *light, float side, float rg
 }
 
 static void plane_row(const struct backdrop_cpu *backdrop, float x_px, float y_px, int count,
-                      float *depths_m, float (*rgb)[3])
+                      float *depths_m, float (*rgb)[3], float *suns)
 {
     const struct terrain *terrain = &backdrop->scene->terrain;
     const float *eye = backdrop->view.eye_m;
@@ -132,6 +132,9 @@ static void plane_row(const struct backdrop_cpu *backdrop, float x_px, float y_p
         depths_m[k] = hit ? depth : depths_m[k];
         for (int i = 0; i < 3; i++)
             rgb[k][i] = hit ? lit[i] : rgb[k][i];
+        if (suns && hit)
+            suns[k] = fmaxf(0, (lift <= 0 ? 1 : -1) * backdrop->light.sun_direction[1]) *
+                      backdrop_clear(&backdrop->light, depth * length_of(ray));
         if (fog && hit)
             backdrop_fog(&backdrop->light, depth * length_of(ray), rgb[k]);
     }
@@ -141,8 +144,8 @@ static void plane_row(const struct backdrop_cpu *backdrop, float x_px, float y_p
 static bool plane_fills_row(const struct backdrop_cpu *backdrop, float x_px, float y_px, int count)
 {
     float depths_m[2] = {INFINITY, INFINITY}, unused[2][3] = {{0, 0, 0}, {0, 0, 0}};
-    plane_row(backdrop, x_px, y_px, 1, &depths_m[0], &unused[0]);
-    plane_row(backdrop, x_px + (float)(count - 1), y_px, 1, &depths_m[1], &unused[1]);
+    plane_row(backdrop, x_px, y_px, 1, &depths_m[0], &unused[0], NULL);
+    plane_row(backdrop, x_px + (float)(count - 1), y_px, 1, &depths_m[1], &unused[1], NULL);
     return isfinite(depths_m[0]) && isfinite(depths_m[1]);
 }
 
@@ -211,7 +214,8 @@ void backdrop_cpu_tile(const struct backdrop_cpu *backdrop, const struct backdro
             sky_row(&backdrop->scene->sky, &backdrop->rays, x_px, y_px, tile->width_px, depths_m,
                     rgb);
         if (backdrop->flat)
-            plane_row(backdrop, x_px, y_px, tile->width_px, depths_m, rgb);
+            plane_row(backdrop, x_px, y_px, tile->width_px, depths_m, rgb,
+                      tile->suns ? tile->suns + row * tile->stride : NULL);
         for (int border = 0; border < backdrop->borders_count; border++)
             border_row(backdrop, border, tile, row);
     }

@@ -17,6 +17,8 @@ struct backdrop_tile {
     int stride;                          /* pixels from row to row in what follows */
     float *depths_m;                     /* along the view; INFINITY where the sky is */
     float (*rgb)[3];
+    float *suns; /* of the terrain, times its albedo and the sun's radiance: how much of rgb is the
+                    sun's; left alone where the sky is. NULL: not wanted */
 };
 /* Both may run in several threads at once. Depths first, then colours where share > 0. */
 void backdrop_cpu_tile(const struct backdrop_cpu *backdrop, const struct backdrop_tile *tile);

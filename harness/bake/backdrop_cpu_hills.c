@@ -182,8 +182,9 @@ static bool facet_of(const struct mesh *mesh, const uint32_t corners[3], const f
     return facet->volume != 0;
 }
 
-static void facet_light(const struct facet *facet, const float weights[3],
-                        const struct backdrop_light *light, float rgb[3])
+/* Returns how much of the sun's light it is. */
+static float facet_light(const struct facet *facet, const float weights[3],
+                         const struct backdrop_light *light, float rgb[3])
 {
     float normal[3], length = 0, cosine = 0;
     for (int i = 0; i < 3; i++) {
@@ -198,6 +199,7 @@ static void facet_light(const struct facet *facet, const float weights[3],
     cosine = cosine > 0 ? cosine / sqrtf(length) : 0;
     for (int i = 0; i < 3; i++)
         rgb[i] = light->in_sun[i] * cosine + light->in_shade[i];
+    return cosine;
 }
 
 static void facet_draw(const struct facet *facet, const struct backdrop_rays *rays,
@@ -230,7 +232,7 @@ static void facet_draw(const struct facet *facet, const struct backdrop_rays *ra
             depths_m[x] = (float)depth;
             float *rgb = tile->rgb[y * tile->stride + x];
             const float weights[3] = {(float)(a / sum), (float)(b / sum), (float)(c / sum)};
-            facet_light(facet, weights, light, rgb);
+            float sun = facet_light(facet, weights, light, rgb);
             if (light->fog_density_per_m > 0) {
                 float square = 0;
                 for (int i = 0; i < 3; i++) {
@@ -239,7 +241,10 @@ static void facet_draw(const struct facet *facet, const struct backdrop_rays *ra
                     square += ray * ray;
                 }
                 backdrop_fog(light, (float)depth * sqrtf(square), rgb);
+                sun *= tile->suns ? backdrop_clear(light, (float)depth * sqrtf(square)) : 0;
             }
+            if (tile->suns)
+                tile->suns[y * tile->stride + x] = sun;
         }
     }
 }

@@ -20,12 +20,18 @@ void hills_begin(struct hills *hills, const struct view *view, int threads);
 void hills_tile(const struct hills *hills, const struct backdrop_rays *rays, const float eye_m[3],
                 const struct backdrop_light *light, const struct backdrop_tile *tile);
 
-/* Fog over a radiance; distance_m: to the eye. */
+/* The share that fog leaves; distance_m: to the eye. */
+static inline float backdrop_clear(const struct backdrop_light *light, float distance_m)
+{
+    return light->fog_density_per_m > 0 ? expf(-light->fog_density_per_m * distance_m) : 1;
+}
+
+/* Fog over a radiance. */
 static inline void backdrop_fog(const struct backdrop_light *light, float distance_m, float rgb[3])
 {
     if (light->fog_density_per_m <= 0)
         return;
-    float clear = expf(-light->fog_density_per_m * distance_m);
+    float clear = backdrop_clear(light, distance_m);
     for (int c = 0; c < 3; c++)
         rgb[c] = light->fog_color[c] + clear * (rgb[c] - light->fog_color[c]);
 }

@@ -182,7 +182,7 @@ static void tile_depths(const struct distant *distant, int x_px, int y_px, int w
                         int height_px)
 {
     float depths_m[TILE_PX * TILE_PX], rgb[TILE_PX * TILE_PX][3];
-    struct backdrop_tile tile = {x_px, y_px, width_px, height_px, TILE_PX, depths_m, rgb};
+    struct backdrop_tile tile = {x_px, y_px, width_px, height_px, TILE_PX, depths_m, rgb, NULL};
     backdrop_cpu_tile(distant->backdrop, &tile);
     for (int y = 0; y < height_px; y++)
         memcpy(distant->canvas.depths_m + (y_px + y) * distant->width_px + x_px,

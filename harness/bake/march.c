@@ -2,6 +2,7 @@
 #include "bake/march_canvas.h"
 #include "bake/march_cells.h"
 #include "bake/march_fars.h"
+#include "bake/march_shadow.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,8 +17,9 @@ struct march {
     struct cells *cells;      /* NULL: trees are culled one by one, and drawn so */
     struct backdrop_cpu *backdrop;
     struct march_fars *fars;
-    struct march_seen *seen;  /* of what is in view, in its order */
-    struct march_span *spans; /* the same; NULL: trees are drawn whole */
+    struct march_seen *seen;       /* of what is in view, in its order */
+    struct march_span *spans;      /* the same; NULL: trees are drawn whole */
+    struct march_shadows *shadows; /* NULL: not wanted */
     size_t tiles_capacity, entries_capacity;
     uint32_t *tile_first; /* threads + 1 runs of tiles + 1 */
     uint32_t *entries;    /* numbers of the list, tile by tile */
@@ -65,7 +67,8 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
     struct march *march = *result = ARENA_NEW(workspace->arena, struct march);
     march->scene = scene;
     march->options = *options;
-    march->options.far_px = options->slab > 0 ? 0 : options->far_px;
+    bool whole = options->slab > 0 || workspace->effects & EFFECT_SUN_SHADOWS;
+    march->options.far_px = whole ? 0 : options->far_px;
     march->block = block_named(options->isa);
     enum status status = backdrop_cpu_prepare(workspace, scene, &march->backdrop);
     march->species = ARENA_ARRAY(workspace->arena, struct march_species, scene->species_count);
@@ -86,6 +89,9 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
         march->cells = cells_create(workspace->arena, scene, bounds);
     else
         march->cull = cull_create(workspace->arena, scene, bounds);
+    if (workspace->effects & EFFECT_SUN_SHADOWS)
+        return march_shadows_create(workspace, scene, options, march->species, march->trees,
+                                    march->cells, &march->shadows);
     return STATUS_OK;
 }
 
@@ -223,6 +229,13 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
     }
 }
 
+/* Leaves a share of the sun's light. */
+static void far_darken(struct march_far *far, float share)
+{
+    for (int c = 0; c < 3; c++)
+        far->rgb[c] -= (1 - share) * far->sun_rgb[c];
+}
+
 static void entry_splat(const struct march *march, const struct march_view *picture, uint32_t entry,
                         bool is_sprite, struct canvas *canvas)
 {
@@ -234,6 +247,8 @@ static void entry_splat(const struct march *march, const struct march_view *pict
         const struct cells_sums *sums = cells_sums(march->cells, cell);
         march_cell_middle(picture, sums, middle);
         far = march_fars_at(march->fars, picture->view, sums->species, MARCH_TURNS, middle);
+        if (picture->shadows)
+            far_darken(&far, march_shadows_of_cell(picture->shadows, cell));
         march_cell_splat(picture, sums, middle, &far, &splat);
     } else {
         const struct march_tree *tree = &march->trees[entry];
@@ -246,6 +261,8 @@ static void entry_splat(const struct march *march, const struct march_view *pict
             canvas_sprite(canvas, picture, tree, sprite, its, &far);
             return;
         }
+        if (picture->shadows)
+            far_darken(&far, march_shadows_of_tree(picture->shadows, entry));
         march_splat_of(picture, tree, &far, &splat);
     }
     canvas_splat(canvas, &splat, &picture->rays);
@@ -311,7 +328,7 @@ static uint64_t tile_draw(const struct march *march, const struct march_view *pi
                           struct canvas *canvas, float *pixels)
 {
     const int side = tiles->side_px;
-    canvas_begin(canvas, picture->view, (int)(tile % (size_t)tiles->across) * side,
+    canvas_begin(canvas, picture, (int)(tile % (size_t)tiles->across) * side,
                  (int)(tile / (size_t)tiles->across) * side, side);
     const uint32_t end = march->tile_first[tile + 1];
     for (uint32_t at = march->tile_first[tile]; at < end && canvas->open_count; at++) {
@@ -329,6 +346,8 @@ static uint64_t tile_draw(const struct march *march, const struct march_view *pi
                          INFINITY);
         }
     }
+    if (picture->shadows)
+        canvas_shade(canvas, picture);
     canvas_end(canvas, march->options.stop, picture->view, pixels);
     uint64_t lookups = canvas->lookups;
     for (int block = 0; block < canvas->blocks_count; block++)
@@ -356,7 +375,10 @@ enum status march_draw(struct workspace *workspace, struct march *march, const s
         .effects = workspace->effects,
         .options = march->options,
         .species = march->species,
+        .shadows = march->shadows,
     };
+    if (march->shadows)
+        march_shadows_light(march->shadows, view->sun_direction, workspace->threads);
     const struct tiles tiles = tiles_of(march, view);
     backdrop_cpu_begin(workspace, march->backdrop, view);
     march_fars_begin(march->fars);

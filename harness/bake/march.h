@@ -19,14 +19,17 @@ enum march_model {
 struct march_options {
     int resolution; /* voxels along a plant's longest extent */
     enum march_model model;
-    float stop;   /* a ray ends when it lets through no more */
-    float step;   /* voxels */
-    float bias;   /* added to the level of detail */
-    float smooth; /* levels over which one turns into the next; 0: at once */
-    float slab;   /* voxels; 0: trees are drawn whole */
-    int tile_px;  /* side of a tile */
-    float far_px; /* trees of so large a radius, px, are drawn from a far picture; slab > 0: none */
-    bool cells;   /* trees below a pixel are drawn by cells of many */
+    float stop;            /* a ray ends when it lets through no more */
+    float step;            /* voxels */
+    float bias;            /* added to the level of detail */
+    float smooth;          /* levels over which one turns into the next; 0: at once */
+    float slab;            /* voxels; 0: trees are drawn whole */
+    int tile_px;           /* side of a tile */
+    float far_px;          /* trees of so large a radius, px, are drawn from a far picture; none
+                              with slab > 0 or shadows */
+    bool cells;            /* trees below a pixel are drawn by cells of many */
+    int shadow_resolution; /* cells of sun shadows along a plant's longest extent, 1 or more where
+                              the scene wants them */
     const char *isa; /* a name of march_isas(), or plain C for what is not there; NULL: the last */
 };
 

@@ -1,11 +1,13 @@
 /* A tile of the march's picture while it is drawn. */
 #include "bake/march_canvas.h"
+#include "bake/march_shadow.h"
 
 #include <math.h>
 #include <string.h>
 
-void canvas_begin(struct canvas *canvas, const struct view *view, int x, int y, int side)
+void canvas_begin(struct canvas *canvas, const struct march_view *picture, int x, int y, int side)
 {
+    const struct view *view = picture->view;
     canvas->tile = (struct backdrop_tile){
         .x_px = x,
         .y_px = y,
@@ -14,7 +16,10 @@ void canvas_begin(struct canvas *canvas, const struct view *view, int x, int y, 
         .stride = side,
         .depths_m = canvas->depths_m,
         .rgb = canvas->rgb,
+        .suns = picture->shadows ? canvas->suns : NULL,
     };
+    if (picture->shadows)
+        memset(canvas->suns, 0, (size_t)(side * side) * sizeof *canvas->suns);
     backdrop_cpu_tile(canvas->backdrop, &canvas->tile);
     canvas->lookups = 0;
     canvas->across = side / MARCH_BLOCK;
@@ -30,6 +35,31 @@ void canvas_begin(struct canvas *canvas, const struct view *view, int x, int y, 
         }
     for (int block = 0; block < canvas->blocks_count; block++)
         canvas->open[block] = true;
+}
+
+void canvas_shade(struct canvas *canvas, const struct march_view *picture)
+{
+    const struct backdrop_tile *tile = &canvas->tile;
+    const struct scene *scene = picture->scene;
+    for (int row = 0; row < tile->height_px; row++)
+        for (int column = 0; column < tile->width_px; column++) {
+            const int at = row * tile->stride + column;
+            const struct march_rays *rays =
+                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
+            float left = rays->left[row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK];
+            if (!(canvas->suns[at] > 0) || left <= picture->options.stop)
+                continue;
+            float place_m[3];
+            for (int i = 0; i < 3; i++)
+                place_m[i] =
+                    picture->view->eye_m[i] +
+                    canvas->depths_m[at] * (picture->rays.first[i] +
+                                            (float)(tile->x_px + column) * picture->rays.right[i] +
+                                            (float)(tile->y_px + row) * picture->rays.down[i]);
+            float dark = (1 - march_shadows_at(picture->shadows, place_m)) * canvas->suns[at];
+            for (int c = 0; c < 3; c++)
+                canvas->rgb[at][c] -= dark * scene->terrain.albedo[c] * scene->sun.radiance[c];
+        }
 }
 
 /* Pixels outside the picture were never opened. */

@@ -14,13 +14,15 @@ struct canvas {
     bool open[TILE_BLOCKS_MAX]; /* more can be seen through it */
     float depths_m[TILE_MAX * TILE_MAX];
     float rgb[TILE_MAX * TILE_MAX][3];
+    float suns[TILE_MAX * TILE_MAX]; /* where the sun has shadows */
     struct backdrop_tile tile;
     uint64_t lookups; /* of far pictures */
     int across, blocks_count, open_count;
 };
 
 /* The tile whose upper left pixel is (x, y), of side_px. */
-void canvas_begin(struct canvas *canvas, const struct view *view, int x, int y, int side_px);
+void canvas_begin(struct canvas *canvas, const struct march_view *picture, int x, int y,
+                  int side_px);
 void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
                   const struct backdrop_rays *picture_rays);
 /* A tree of a few pixels: a far picture of it, with what that hides and shines altogether (its)
@@ -35,6 +37,8 @@ bool canvas_hides(const struct march_splat *splat, const struct backdrop_rays *p
 void canvas_march(struct canvas *canvas, const struct march_view *picture,
                   const struct march_tree *tree, const struct march_seen *seen, float from_m,
                   float to_m);
+/* Shadows on the terrain, where it is still seen. */
+void canvas_shade(struct canvas *canvas, const struct march_view *picture);
 /* pixels: of the picture, height x width x 4. */
 void canvas_end(const struct canvas *canvas, float stop, const struct view *view, float *pixels);
 

@@ -90,11 +90,15 @@ static void all_turns(const struct march_far *turns, const float *shares, struct
             continue;
         float cover_m2 = shares[turn] * turns[turn].cover_m2;
         all->cover_m2 += cover_m2;
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             all->rgb[c] += cover_m2 * turns[turn].rgb[c];
+            all->sun_rgb[c] += cover_m2 * turns[turn].sun_rgb[c];
+        }
     }
-    for (int c = 0; c < 3; c++)
-        all->rgb[c] = all->cover_m2 > 0 ? all->rgb[c] / all->cover_m2 : 0;
+    for (int c = 0; c < 3 && all->cover_m2 > 0; c++) {
+        all->rgb[c] /= all->cover_m2;
+        all->sun_rgb[c] /= all->cover_m2;
+    }
 }
 
 void march_fars_make(struct march_fars *fars, const struct march_view *picture, march_block *block)
@@ -134,8 +138,10 @@ struct march_far march_fars_at(const struct march_fars *fars, const struct view 
         float share = (k & 1 ? beyond[0] : 1 - beyond[0]) * (k >> 1 ? beyond[1] : 1 - beyond[1]);
         const struct march_far *from = first + ((k & 1) + (k >> 1) * SIDE) * KINDS;
         far.cover_m2 += share * from->cover_m2;
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             far.rgb[c] += share * from->rgb[c];
+            far.sun_rgb[c] += share * from->sun_rgb[c];
+        }
     }
     return far;
 }

@@ -1,7 +1,9 @@
 /* A tree turned into numbers for a kernel: place on the screen, rays in its axes, light. */
 #include "bake/march_job.h"
+#include "bake/march_shadow.h"
 
 #include <math.h>
+#include <string.h>
 
 static float dot3(const float a[3], const float b[3])
 {
@@ -124,6 +126,11 @@ static struct march_form form_isotropic(const float x[3], const float y[3])
     return (struct march_form){{dot3(x, y) / 3}};
 }
 
+struct march_form march_form_of(enum march_model model, const float x[3], const float y[3])
+{
+    return model == MARCH_ISOTROPIC ? form_isotropic(x, y) : form_of(x, y);
+}
+
 static void light_fill(const struct march_view *picture, const struct march_tree *tree,
                        const struct voxels *voxels, struct march_job *job)
 {
@@ -134,13 +141,12 @@ static void light_fill(const struct march_view *picture, const struct march_tree
     job->cosine = dot3(toward_eye, toward_sun);
     job->sun_square = tree->stretch == 1 ? 1 : dot3(toward_sun, toward_sun);
     job->raise = 1 / (tree->stretch * tree->stretch) - 1;
-    struct march_form (*form)(const float[3], const float[3]) =
-        picture->options.model == MARCH_ISOTROPIC ? form_isotropic : form_of;
-    job->hidden = form(toward_eye, toward_eye);
-    job->upright = form((float[3]){0, 1, 0}, (float[3]){0, 1, 0});
+    const enum march_model model = picture->options.model;
+    job->hidden = march_form_of(model, toward_eye, toward_eye);
+    job->upright = march_form_of(model, (float[3]){0, 1, 0}, (float[3]){0, 1, 0});
     job->seen = job->hidden;
-    job->lit = form(toward_sun, toward_sun);
-    job->both = form(toward_eye, toward_sun);
+    job->lit = march_form_of(model, toward_sun, toward_sun);
+    job->both = march_form_of(model, toward_eye, toward_sun);
     job->one_sided = picture->effects & EFFECT_TWO_SIDED ? 0 : 1;
     for (int c = 0; c < 3; c++) {
         float white = voxels->albedo[c] / 255;
@@ -192,6 +198,9 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     job->stop = picture->options.stop;
     job->thinned = 0;
     light_fill(picture, tree, voxels, job);
+    job->light.passes = NULL;
+    if (picture->shadows)
+        march_shadows_fill(picture->shadows, tree, level, job);
     fog_fill(picture, &box, job);
 }
 
@@ -224,6 +233,18 @@ static void sprite_sum(struct march_sprite *sprite)
                                          sprite->sums[y - 1][x - 1][c];
 }
 
+/* The sun's part of what rays see of a tree. */
+static void far_sun_add(const struct march_job *job, march_block *block, struct march_rays *rays,
+                        struct march_far *far)
+{
+    struct march_job sun = *job;
+    memset(sun.shade, 0, sizeof sun.shade);
+    block(&sun, rays);
+    for (int lane = 0; lane < MARCH_RAYS; lane++)
+        for (int c = 0; c < 3; c++)
+            far->sun_rgb[c] += rays->rgb[c][lane];
+}
+
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
                     float y_px, march_block *block, struct march_far *far,
                     struct march_sprite *sprite)
@@ -233,8 +254,13 @@ void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t
     const struct voxels *voxels = picture->species[species].voxels;
     const float depth_m = 2000 * picture->species[species].radius_m;
     struct march_view away = *picture;
-    struct march_tree tree = {
-        .cosine = cosf(angle), .sine = sinf(angle), .scale = 1, .stretch = 1, .species = species};
+    struct march_tree tree = {.cosine = cosf(angle),
+                              .sine = sinf(angle),
+                              .scale = 1,
+                              .stretch = 1,
+                              .species = species,
+                              .turn = (uint16_t)turn,
+                              .alone = true};
     struct march_box box = march_box_of(view, &tree, voxels, 0);
     float ray[3], sides_m[2];
     for (int i = 0; i < 3; i++)
@@ -269,12 +295,17 @@ void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t
             rays.left[lane] = 1;
             rays.depths_m[lane] = 2 * depth_m;
         }
+        struct march_rays lit = rays;
         block(&job, &rays);
         far_gather(&rays, column, row, far, sprite);
+        if (picture->shadows)
+            far_sun_add(&job, block, &lit, far);
     }
     sprite_sum(sprite);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         far->rgb[c] = far->cover_m2 > 0 ? far->rgb[c] / far->cover_m2 : 0;
+        far->sun_rgb[c] = far->cover_m2 > 0 ? far->sun_rgb[c] / far->cover_m2 : 0;
+    }
     far->cover_m2 *= sides_m[0] * sides_m[1];
 }
 

@@ -15,6 +15,8 @@ struct march_species {
     float radius_m;    /* of a sphere around it that holds the plant */
 };
 
+struct march_shadows;
+
 /* Constants of a picture. */
 struct march_view {
     const struct view *view;
@@ -24,6 +26,7 @@ struct march_view {
     unsigned effects;
     struct march_options options;
     const struct march_species *species;
+    const struct march_shadows *shadows; /* NULL: the sun has none */
 };
 
 enum { MARCH_SPLAT = 255, MARCH_SPRITE = 253 };
@@ -48,6 +51,9 @@ struct march_span {
 struct march_span march_span_of(const struct march_view *picture, const struct march_tree *tree,
                                 uint32_t level);
 
+/* x' S y of a packed matrix as a model has it. */
+struct march_form march_form_of(enum march_model model, const float x[3], const float y[3]);
+
 /* Everything but the block's own first ray, for pixels around (x, y). */
 void march_job_fill(const struct march_view *picture, const struct march_tree *tree, uint32_t level,
                     float x_px, float y_px, struct march_job *job);
@@ -63,6 +69,7 @@ void march_seen_between(struct march_seen *seen, int axis, float first, float la
 /* How a species, turned by a step, looks from far away in a direction. */
 struct march_far {
     float cover_m2, rgb[3]; /* hidden of the screen's plane at its depth, for scale 1; radiance */
+    float sun_rgb[3];       /* of that by the sun, where it has shadows */
 };
 /* The same as a small picture: what a rectangle of the screen's plane around its middle shows, as
  * sums over all texels above and to the left (Crow 1984, doi:10.1145/800031.808600), row 0 on top:

@@ -134,8 +134,46 @@ static inline struct lanes_facing facing_by_mean(const struct march_job *job,
     return facing;
 }
 
+/* Two neighbouring bytes, one after the other, mixed: 0..255. */
+static inline lanes pair_value(const uint8_t *bytes, lanes_int at, lanes share, lanes_mask mask)
+{
+    lanes_int pair = lanes_gather_pair(bytes, at, mask);
+    lanes first = lanes_of(pair & 255);
+    return first + share * (lanes_of(pair >> 8 & 255) - first);
+}
+
+/* Share of the sun's light at places in the level's voxels. bark: its share of what is there. */
+static inline lanes sun_share(const struct march_sun *light, const lanes place[3], lanes bark,
+                              lanes_mask mask)
+{
+    lanes cells[3];
+    lanes_int whole[3], corner[2];
+    lanes share[2];
+    for (int k = 0; k < 3; k++) {
+        const float *to = light->to_cells[k];
+        cells[k] = to[0] * place[0] + to[1] * place[1] + to[2] * place[2] + to[3];
+        if (k == 2)
+            cells[k] -= lanes_max(4 * bark - 3, lanes_all(0)) * light->bark_cells;
+        cells[k] = lanes_clamp(cells[k], 0, (float)light->size[k] - (k == 2 ? 1.001f : 0.001f));
+        whole[k] = lanes_truncate(cells[k]);
+    }
+    for (int k = 0; k < 2; k++) {
+        lanes at = lanes_min(cells[k] * light->to_gains[k], lanes_all((float)light->side - 1.001f));
+        corner[k] = lanes_truncate(at);
+        share[k] = at - lanes_of(corner[k]);
+    }
+    lanes_int column = (whole[1] * light->size[0] + whole[0]) * light->size[2] + whole[2];
+    lanes pass = pair_value(light->passes, column, cells[2] - lanes_of(whole[2]), mask);
+    lanes_int low = corner[1] * light->side + corner[0];
+    lanes below = pair_value(light->gains, low, share[0], mask);
+    lanes above = pair_value(light->gains, low + light->side, share[0], mask);
+    return pass * (below + share[1] * (above - below)) * (1.0f / (255 * 255));
+}
+
+/* place: in the level's voxels; shaded: the sun has shadows. */
 static inline struct lanes_sample sample_voxels(const struct march_job *job, lanes_int at,
-                                                lanes_mask mask)
+                                                const lanes place[3], lanes_mask mask,
+                                                const bool shaded)
 {
     struct lanes_sample sample;
     struct lanes_facing facing;
@@ -153,12 +191,14 @@ static inline struct lanes_sample sample_voxels(const struct march_job *job, lan
         evenness = 0.75f + lanes_of(color >> 24 & 15) * (1.0f / 60);
     }
     sample.depth = facing.depth;
-    lanes one_sided =
-        lanes_max(lanes_of(color >> 28 & 15) * (1.0f / 15), lanes_all(job->one_sided));
+    lanes bark = lanes_of(color >> 28 & 15) * (1.0f / 15);
+    lanes one_sided = lanes_max(bark, lanes_all(job->one_sided));
     lanes diffuse = lanes_max(
         (facing.even + 0.5f * one_sided * (facing.toward - facing.even)) / evenness, lanes_all(0));
     if (job->raise != 0)
         diffuse /= lanes_sqrt(lanes_max(1 + job->raise * facing.upright, lanes_all(lanes_least)));
+    if (shaded)
+        diffuse *= sun_share(&job->light, place, bark, mask);
     for (int c = 0; c < 3; c++)
         sample.rgb[c] = lanes_of(color >> (8 * c) & 255) * (job->shade[c] + job->sun[c] * diffuse);
     return sample;
@@ -187,8 +227,9 @@ static inline lanes_int cells_at(const struct march_job *job, const lanes ray[3]
     return lanes_gather(job->cells, index, alive);
 }
 
-/* True when something may still be seen through one of the rays. */
-static inline bool march_lanes(const struct march_job *job, struct march_rays *rays, int first)
+/* True when something may still be seen through one of the rays. shaded: the sun has shadows. */
+static inline __attribute__((always_inline)) bool
+march_lanes(const struct march_job *job, struct march_rays *rays, int first, const bool shaded)
 {
     static const float columns[MARCH_RAYS] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
     static const float rows[MARCH_RAYS] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
@@ -219,9 +260,11 @@ static inline bool march_lanes(const struct march_job *job, struct march_rays *r
         lanes_int cell = cells_at(job, ray, middle, alive);
         lanes_int behind = cell - VOXELS_FIRST;
         lanes_mask full = lanes_both(lanes_int_less((lanes_int){0} - 1, behind), alive);
-        lookups += lanes_count(alive) + 2 * lanes_count(full);
+        lookups += lanes_count(alive) + (shaded ? 5 : 2) * lanes_count(full);
         if (lanes_any(full)) {
-            struct lanes_sample sample = sample_voxels(job, behind << 2, full);
+            const lanes place[3] = {job->eye[0] + middle * ray[0], job->eye[1] + middle * ray[1],
+                                    job->eye[2] + middle * ray[2]};
+            struct lanes_sample sample = sample_voxels(job, behind << 2, place, full, shaded);
             lanes pass = lanes_fade(sample.depth * length * depth_per);
             lanes share = lanes_pick(full, left - left * pass, lanes_all(0));
             left -= share;
@@ -242,8 +285,13 @@ static inline bool march_lanes(const struct march_job *job, struct march_rays *r
 static inline bool march_all(const struct march_job *job, struct march_rays *rays)
 {
     bool open = false;
+    if (job->light.passes) {
+        for (int first = 0; first < MARCH_RAYS; first += LANES)
+            open |= march_lanes(job, rays, first, true);
+        return open;
+    }
     for (int first = 0; first < MARCH_RAYS; first += LANES)
-        open |= march_lanes(job, rays, first);
+        open |= march_lanes(job, rays, first, false);
     return open;
 }
 

@@ -66,4 +66,11 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (__m256i)at, (__m256i)mask, 4);
 }
 
+/* The byte at a place and the next in bits 0 to 15, whatever above them. Reads four bytes. */
+static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, lanes_mask mask)
+{
+    return (lanes_int)_mm256_mask_i32gather_epi32(
+        _mm256_setzero_si256(), (const int *)(const void *)bytes, (__m256i)at, (__m256i)mask, 1);
+}
+
 #endif

@@ -66,4 +66,11 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (const int *)words, 4);
 }
 
+/* The byte at a place and the next in bits 0 to 15, whatever above them. Reads four bytes. */
+static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, lanes_mask mask)
+{
+    return (lanes_int)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)at,
+                                                  (const void *)bytes, 1);
+}
+
 #endif

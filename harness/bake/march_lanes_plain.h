@@ -71,4 +71,13 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
     return got;
 }
 
+/* The byte at a place and the next in bits 0 to 15, 0 where the mask is not set. */
+static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, lanes_mask mask)
+{
+    lanes_int got;
+    for (int i = 0; i < LANES; i++)
+        got[i] = mask[i] ? bytes[at[i]] | bytes[at[i] + 1] << 8 : 0;
+    return got;
+}
+
 #endif

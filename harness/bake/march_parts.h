@@ -11,12 +11,22 @@ struct march_rays {
     float left[MARCH_RAYS]; /* transmittance */
     float rgb[3][MARCH_RAYS];
     float depths_m[MARCH_RAYS]; /* of what is behind the trees, along the view */
-    uint64_t lookups;           /* a cell is one, a voxel two, for each ray */
+    uint64_t lookups;           /* a cell is one, a voxel two, its shadow three, for each ray */
 } __attribute__((aligned(64)));
 
 /* x' M y of a packed matrix: factors[0] + sum of its five entries of 6 bits, each by its factor. */
 struct march_form {
     float factors[6];
+};
+
+/* How much of the sun reaches a place in a tree: what its matter lets through, times what falls on
+ * it from outside. Places are turned into cells along the light's axes. */
+struct march_sun {
+    const uint8_t *passes; /* NULL: all. size 1, 0, 2 (fastest), at the upper side of each layer */
+    const uint8_t *gains;  /* side x side over columns 1, 0, at their corners */
+    float to_cells[3][4], to_gains[2];
+    float bark_cells; /* what is all bark takes its light so much nearer the sun */
+    int32_t size[3], side;
 };
 
 /* A tree at one of its levels, seen through a block of pixels. Lengths in the level's voxels. */
@@ -39,7 +49,8 @@ struct march_job {
     struct march_form upright; /* M_yy */
     float sun[3], shade[3];    /* radiance of a white voxel's byte: by the sun, by the sky */
     float one_sided;           /* 1: leaves are lit on the side of the sun alone */
-    float clear, fog[3];       /* the share that fog leaves; what it adds */
+    struct march_sun light;
+    float clear, fog[3]; /* the share that fog leaves; what it adds */
 };
 
 /* Marches a block's rays through a tree. False when nothing more can be seen through the block. */

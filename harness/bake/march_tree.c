@@ -16,7 +16,8 @@ void march_trees_fill(const struct scene *scene, struct march_tree *trees)
         tree->stretch = instance->stretch;
         tree->species = instance->species;
         float turns = instance->rotation_rad / 6.2831853f;
-        tree->turn = (uint32_t)((turns - floorf(turns)) * MARCH_TURNS + 0.5f) % MARCH_TURNS;
+        tree->turn =
+            (uint16_t)((uint32_t)((turns - floorf(turns)) * MARCH_TURNS + 0.5f) % MARCH_TURNS);
     }
 }
 

@@ -9,7 +9,8 @@
 struct march_tree {
     float position_m[3], cosine, sine, scale, stretch;
     uint32_t species;
-    uint32_t turn; /* rotation, in MARCH_TURNS steps */
+    uint16_t turn; /* rotation, in MARCH_TURNS steps */
+    bool alone;    /* none of the scene's: no other shades it */
 };
 enum { MARCH_TURNS = 8 };
 

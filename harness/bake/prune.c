@@ -31,26 +31,6 @@ struct patch {
     double area, opaque, albedo[3], center[3];
 };
 
-static void cross_edges(const float *a, const float *b, const float *c, double n[3])
-{
-    double u[3], v[3];
-    for (int i = 0; i < 3; i++) {
-        u[i] = (double)b[i] - a[i];
-        v[i] = (double)c[i] - a[i];
-    }
-    for (int i = 0; i < 3; i++)
-        n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-}
-
-static double triangle_area(const struct mesh *mesh, uint32_t triangle)
-{
-    const uint32_t *corners = mesh->triangles[triangle];
-    double n[3];
-    cross_edges(mesh->positions[corners[0]], mesh->positions[corners[1]],
-                mesh->positions[corners[2]], n);
-    return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-}
-
 /* Bilinear, wrapping. */
 static void texture_at(const struct texture *texture, float u, float v, float rgba[4])
 {
@@ -103,7 +83,7 @@ static struct patch patch_of(struct pruner *pruner, uint32_t triangle,
 {
     const struct mesh *mesh = pruner->mesh;
     const uint32_t *corners = mesh->triangles[triangle];
-    struct patch patch = {.area = triangle_area(mesh, triangle)};
+    struct patch patch = {.area = mesh_triangle_area(mesh, triangle)};
     bool textured = material->texture && mesh->uvs;
     int samples = textured ? TEXTURE_SAMPLES : 1;
     float start[2] = {random_float(&pruner->random), random_float(&pruner->random)};
@@ -244,7 +224,7 @@ static double bark_area(const struct mesh *mesh)
         const struct mesh_part *part = &mesh->parts[p];
         bool bark = mesh->materials[part->material].kind == MATERIAL_BARK;
         for (uint32_t t = 0; bark && t < part->triangles_count; t++)
-            area += triangle_area(mesh, part->first_triangle + t);
+            area += mesh_triangle_area(mesh, part->first_triangle + t);
     }
     return area;
 }
@@ -260,7 +240,7 @@ static void add_bark(struct pruner *pruner, size_t samples, double step, double 
         const struct mesh_part *part = &mesh->parts[p];
         const struct material *material = &mesh->materials[part->material];
         for (uint32_t t = 0; material->kind == MATERIAL_BARK && t < part->triangles_count; t++) {
-            area += triangle_area(mesh, part->first_triangle + t);
+            area += mesh_triangle_area(mesh, part->first_triangle + t);
             for (; next < area && added < samples; next += step, added++)
                 add_sample(pruner, part->first_triangle + t, material, element);
         }

@@ -69,7 +69,7 @@ static enum status shoots_list(struct arena *arena, const struct plan *plan, con
         enum status status = scene_summary(arena, cell->scene, &summary, error);
         if (status)
             return status;
-        shoot_want(shoot, stage_effects(cell->method, summary.effects), true);
+        shoot_want(shoot, stage_effects(arena, cell, summary.effects), true);
         shoot_want(shoot, summary.effects, false);
     }
     return STATUS_OK;

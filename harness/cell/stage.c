@@ -20,9 +20,24 @@ void stage_announce(const struct stage *stage, const char *pass)
         return;
 }
 
-unsigned stage_effects(const struct method *method, unsigned scene_effects)
+/* The cell's options; text that cannot be parsed leaves what came before it. */
+static enum status options_read(struct arena *arena, const struct cell *cell, void **options,
+                                struct error *error)
 {
-    return scene_effects & method->traits & EFFECTS_ALL;
+    const struct method *method = cell->method;
+    if (!method->options)
+        return STATUS_OK;
+    *options = arena_alloc(arena, 1, method->options_size);
+    options_default(method->options, *options);
+    return options_parse(method->options, cell->options, *options, error);
+}
+
+unsigned stage_effects(struct arena *arena, const struct cell *cell, unsigned scene_effects)
+{
+    struct error unused = {0};
+    void *options = NULL;
+    options_read(arena, cell, &options, &unused);
+    return method_effects(cell->method, options, scene_effects);
 }
 
 static int threads_of(const struct plan *plan)
@@ -56,7 +71,7 @@ static enum status scene_open(struct stage *stage)
     result->scene_hash = stage->scene->hash;
     result->instances = stage->scene->instances_count;
     result->scene_effects = stage->scene->effects;
-    result->effects = stage_effects(cell->method, stage->scene->effects);
+    result->effects = stage_effects(stage->scene_arena, cell, stage->scene->effects);
     const char *reason = "it gives no reason";
     if (cell->method->supported && (status = cell->method->supported(stage->scene, &reason)))
         return error_set(stage->error, status, "%s cannot draw %s: %s", cell->method_name,
@@ -110,7 +125,6 @@ static void workspace_fill(struct stage *stage)
 
 enum status stage_open(struct stage *stage)
 {
-    const struct method *method = stage->cell->method;
     stage_announce(stage, "loading the scene");
     getloadavg(&stage->result->load_average, 1);
     stage->result->threads = threads_of(stage->plan);
@@ -118,11 +132,8 @@ enum status stage_open(struct stage *stage)
     stage->scene_arena = arena_create(0);
     stage->arena = arena_create(stage->plan->memory_bytes);
     enum status status = scene_open(stage);
-    if (!status && method->options) {
-        stage->options = arena_alloc(stage->scene_arena, 1, method->options_size);
-        options_default(method->options, stage->options);
-        status = options_parse(method->options, stage->cell->options, stage->options, stage->error);
-    }
+    if (!status)
+        status = options_read(stage->scene_arena, stage->cell, &stage->options, stage->error);
     stage_announce(stage, "making the GL context");
     if (!status)
         status = context_open(stage);

@@ -58,6 +58,6 @@ struct reference_options stage_reference_options(const struct plan *plan, const 
 /* RUN/references/KEY.frame */
 const char *stage_reference_path(struct arena *arena, const char *folder, uint64_t key);
 /* Effects that a cell draws of those its scene asks for. */
-unsigned stage_effects(const struct method *method, unsigned scene_effects);
+unsigned stage_effects(struct arena *arena, const struct cell *cell, unsigned scene_effects);
 
 #endif

@@ -36,6 +36,7 @@ static enum status prepare(struct trial *trial, const char *text)
         if (options_parse(method->options, text, options, error))
             return error->status;
     }
+    trial->workspace.effects = method_effects(method, options, trial->workspace.effects);
     subject_say(trial->subject, "prepare");
     status = method->prepare(&trial->workspace, trial->scene, options, &trial->state);
     if (status && !error->status)
@@ -64,8 +65,7 @@ enum status trial_open(struct subject *subject, const struct trial_request *requ
         trial->scene->effects &= ~request->scene_effects_off;
         if (request->scene_effects_off & EFFECT_FOG)
             trial->scene->fog.density_per_m = 0;
-        trial->workspace.effects =
-            trial->scene->effects & method->traits & EFFECTS_ALL & ~request->effects_off;
+        trial->workspace.effects = trial->scene->effects & ~request->effects_off;
         subject_say(subject, "making the GL context");
     }
     if (!status && !(method->traits & TRAIT_CPU))

@@ -41,7 +41,7 @@ struct workspace {
     struct arena *arena; /* all host memory, counted as host_bytes */
     struct gl *gl;       /* all GL objects, counted as device_bytes; NULL for a CPU method */
     struct error *error;
-    unsigned effects; /* to draw: the scene's wanted ones that the method's traits have */
+    unsigned effects; /* to draw: the scene's wanted ones that the method has, as its options are */
     enum lod lod;
     enum target_format format; /* of every target that will come */
     int threads;               /* that a CPU method may use, and llvmpipe uses */
@@ -58,6 +58,8 @@ struct method {          /* its name is its file's name, '-' written '_' in C */
     unsigned traits;
     const struct option *options; /* ends with OPTION_END; NULL: none */
     size_t options_size;
+    /* Optional: those of the traits' effects that are left with these options; NULL: all. */
+    unsigned (*effects)(const void *options);
     /* Optional. STATUS_UNSUPPORTED with *reason when this scene cannot be drawn. */
     enum status (*supported)(const struct scene *scene, const char **reason);
     /* Everything that does not depend on the view; timed cold as build_seconds. */
@@ -84,5 +86,13 @@ extern const struct method *const methods_builtin[];
  * symbol, is STATUS_INVALID; one that crashes, leaves or hangs while it is loaded is STATUS_CRASH
  * or STATUS_TIMEOUT. */
 enum status method_find(const char *name, const struct method **method, struct error *error);
+
+/* The effects of those wanted that a method draws with its options. */
+static inline unsigned method_effects(const struct method *method, const void *options,
+                                      unsigned wanted)
+{
+    unsigned left = method->effects ? method->effects(options) : EFFECTS_ALL;
+    return wanted & left & method->traits & EFFECTS_ALL;
+}
 
 #endif

@@ -5,6 +5,26 @@
 
 #include <math.h>
 
+static void cross_edges(const float *a, const float *b, const float *c, double n[3])
+{
+    double u[3], v[3];
+    for (int i = 0; i < 3; i++) {
+        u[i] = (double)b[i] - a[i];
+        v[i] = (double)c[i] - a[i];
+    }
+    for (int i = 0; i < 3; i++)
+        n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+}
+
+double mesh_triangle_area(const struct mesh *mesh, size_t triangle)
+{
+    const uint32_t *corners = mesh->triangles[triangle];
+    double n[3];
+    cross_edges(mesh->positions[corners[0]], mesh->positions[corners[1]],
+                mesh->positions[corners[2]], n);
+    return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
 void mesh_bounds(struct mesh *mesh)
 {
     double radius2 = 0;

@@ -68,5 +68,7 @@ struct plant_cost plant_cost(const struct plant *plant);
 enum status mesh_check(const struct mesh *mesh, struct error *error);
 /* Recomputes minimum_m, maximum_m and radius_m. */
 void mesh_bounds(struct mesh *mesh);
+/* m^2 */
+double mesh_triangle_area(const struct mesh *mesh, size_t triangle);
 
 #endif

@@ -1,0 +1,36 @@
+/* Sun shadows of the march: how much of the sun's light reaches a place.
+ *
+ * Each species, as it is turned, keeps a volume of what it lets through from the sun down to each
+ * place in it: Kajiya and Kay 1989 (doi:10.1145/74334.74361), swept along the light. All trees
+ * together are laid into one map seen from the sun, in which a texel holds the boxes of matter that
+ * its rays pass, as deep shadow maps do (Lokovic and Veach 2000, doi:10.1145/344779.344958). From
+ * it every tree gets the light that falls on its side of the sun through all other trees, and the
+ * ground its own. Bent terrain adds the height below which it takes the sun. All is built anew when
+ * the sun has moved. */
+#ifndef TREELINE_BAKE_MARCH_SHADOW_H
+#define TREELINE_BAKE_MARCH_SHADOW_H
+
+#include "bake/cells.h"
+#include "bake/march_job.h"
+
+struct march_shadows;
+
+/* trees: one an instance of the scene; cells: of them, or NULL; all stay. */
+enum status march_shadows_create(struct workspace *workspace, const struct scene *scene,
+                                 const struct march_options *options,
+                                 const struct march_species *species,
+                                 const struct march_tree *trees, const struct cells *cells,
+                                 struct march_shadows **shadows);
+/* Nothing happens where the sun stands as at the last call. */
+void march_shadows_light(struct march_shadows *shadows, const float sun_direction[3], int threads);
+/* What of a picture's job is the sun's: of the scene's trees (their own shadows and the others')
+ * and of trees that stand alone. */
+void march_shadows_fill(const struct march_shadows *shadows, const struct march_tree *tree,
+                        uint32_t level, struct march_job *job);
+/* Share of the sun that reaches a tree of the scene, or those of a cell, through all others. */
+float march_shadows_of_tree(const struct march_shadows *shadows, uint32_t tree);
+float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell);
+/* Share of the sun that reaches a place in the world, m, through trees and terrain. */
+float march_shadows_at(const struct march_shadows *shadows, const float place_m[3]);
+
+#endif
