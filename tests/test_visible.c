@@ -140,6 +140,7 @@ static void lone_fill(struct lone *lone, const double mean[3], const double eye[
                               .step = 1,
                               .far_m = INFINITY,
                               .by_mean = true,
+                              .sun_square = 1,
                               .one_sided = one_sided,
                               .clear = 1};
     for (int i = 0; i < 3; i++) {
