@@ -115,7 +115,17 @@ void main()
     // loops are tested at their end, and what is not met has no share. What is read behind a loop must then be
     // carried by it, each from its own last value (llvmpipe 22 makes the others again, also for lanes that have left).
     do {
-        int tree = 3 * int(texelFetch(entries, min(entry, end - 1)).r);
+        // The next tree whose pixels hold this one: each lane passes over the others by itself.
+        int tree = 0;
+        bool held = false;
+        do {
+            int next = 3 * int(texelFetch(entries, min(entry, end - 1)).r);
+            uvec2 pixels = texelFetch(trees, next).xy;
+            ivec2 first = ivec2(pixels.x & 65535u, pixels.x >> 16), last = ivec2(pixels.y & 65535u, pixels.y >> 16);
+            tree = held ? tree : next;
+            held = held || (entry < end && all(lessThanEqual(first, at)) && all(lessThanEqual(at, last)));
+            entry += held ? 0 : 1;
+        } while (!held && entry < end);
         uvec4 place = texelFetch(trees, tree);
         vec4 where = uintBitsToFloat(texelFetch(trees, tree + 1));
         uvec4 looks = texelFetch(trees, tree + 2);
@@ -155,8 +165,7 @@ void main()
             span = min(min(high.x, depth * scale), min(high.y, high.z)) - from;
             start = where.xyz + from * u;
         }
-        ivec2 first = ivec2(place.x & 65535u, place.x >> 16), last = ivec2(place.y & 65535u, place.y >> 16);
-        if (any(lessThan(at, first)) || any(greaterThan(at, last)) || entry >= end)
+        if (!held)
             span = 0.0;
         float leap = 1.0 / max(abs(u.x), max(abs(u.y), abs(u.z)));
         ivec3 grid = ivec3(size);

@@ -5,7 +5,7 @@
 struct options {
     int path, add, front, slices, resolution, cut, filter, samples;
     float criterion, texel, near, distant;
-    bool dilate, interpolate, rough, facing, smooth;
+    bool dilate, interpolate, rough, facing, smooth, unit;
 };
 
 /* clang-format off */
@@ -41,6 +41,8 @@ static const struct option table[] = {
            "up to four times the slices, by interpolation, where the criterion asks for more"),
     OPTION(struct options, smooth, 0, 0, 1, "",
            "numbers of slices and directions change gradually"),
+    OPTION(struct options, unit, 0, 0, 1, "",
+           "normals get length 1 after filtering: nothing scatters within a texel any more"),
     OPTION_END,
 };
 /* clang-format on */
@@ -74,6 +76,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .square = !fast && options->add != ADD_EVEN,
         .straight = !fast,
         .dilate = options->dilate,
+        .unit = options->unit,
         .trilinear = fast ? options->filter == 0 : options->add != ADD_BILINEAR,
         .rectangles = fast || options->add == ADD_RECTANGLES,
         .near_radii = fast ? options->near : 0,

@@ -139,7 +139,7 @@ static struct frame *draw_on_cpu(struct arena *arena, const char *options, enum 
     void *values = arena_alloc(arena, 1, method->options_size), *own = NULL;
     options_default(method->options, values);
     if (options_parse(method->options, options, values, &error) != STATUS_OK ||
-        options_parse(method->options, "tile=8", values, &error) != STATUS_OK ||
+        options_parse(method->options, "tile=8,far=0", values, &error) != STATUS_OK ||
         method->prepare(&workspace, scene, values, &own) != STATUS_OK ||
         method->draw(&workspace, own, view, &target) != STATUS_OK)
         fail_msg("%s", error.text);

@@ -136,6 +136,31 @@ static void test_shaded_texels__a_board_is_lit_by_the_closed_form(void **state)
     }
 }
 
+/* Coarse texels, whose normals point everywhere. Of length 1 again, little scatters (between texels
+ * they are still averaged): spreading the light changes less; and a short normal's light is lost
+ * without spreading, a long one's is not. */
+static void test_shaded_texels__normals_of_length_1_do_not_scatter(void **state)
+{
+    struct fixture *f = *state;
+    struct scene *scene = tree_scene(f->arena, f->plant, 1, 0.6f);
+    struct view view = tree_view(scene, 0.2f, 0.1f, 30, 9);
+    struct frame *frames[2][2];
+    for (int unit = 0; unit < 2; unit++)
+        for (int rough = 0; rough < 2; rough++)
+            frames[unit][rough] = tree_draw(
+                f->arena, f->method,
+                arena_printf(f->arena, "slices=4,resolution=16,facing=off,rough=%s,unit=%s",
+                             rough ? "on" : "off", unit ? "on" : "off"),
+                scene, lit, &view, NULL);
+    double short_spread = tree_rmse(frames[0][0], frames[0][1]);
+    double long_spread = tree_rmse(frames[1][0], frames[1][1]);
+    double lost = tree_mean(frames[1][0], 1) / tree_mean(frames[0][0], 1);
+    if (long_spread > 0.6 * short_spread || lost < 1.05 ||
+        tree_difference(frames[0][0], frames[1][0], false) > 1e-6)
+        fail_msg("spread %.4f, of length 1 %.4f; light without spread %.3f times", short_spread,
+                 long_spread, lost);
+}
+
 static void test_shaded_texels__light_follows_the_sun_as_the_reference_does(void **state)
 {
     struct fixture *f = *state;
@@ -387,6 +412,7 @@ int main(void)
             test_shaded_texels__coverage_is_right_from_twelve_azimuths_and_three_elevations),
         cmocka_unit_test(test_shaded_texels__along_the_axes_the_outline_is_the_plants),
         cmocka_unit_test(test_shaded_texels__a_board_is_lit_by_the_closed_form),
+        cmocka_unit_test(test_shaded_texels__normals_of_length_1_do_not_scatter),
         cmocka_unit_test(test_shaded_texels__light_follows_the_sun_as_the_reference_does),
         cmocka_unit_test(test_shaded_texels__fog_takes_what_the_law_of_beer_lambert_says),
         cmocka_unit_test(test_shaded_texels__naive_and_fast_draw_the_same_picture),

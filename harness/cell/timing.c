@@ -138,7 +138,8 @@ static struct view sun_turned(const struct view *view, double angle_rad)
     return turned;
 }
 
-/* The sun moved, back, and a frame without any change of light; three times. */
+/* The sun moved, back, and a frame without any change of light; three times. Where light alone
+ * takes longer than all frames may, moved once, against the first timed frame. */
 static enum status relight_pairs(struct stage *stage, const struct view *view)
 {
     enum { PAIRS = 3 };
@@ -147,6 +148,10 @@ static enum status relight_pairs(struct stage *stage, const struct view *view)
     for (int i = 0; i < PAIRS && !status; i++) {
         struct view turned = sun_turned(view, 0.35 * (i + 1));
         status = stage_draw(stage, &turned, &relit[i]);
+        if (!status && relit[i] > stage->plan->frame_seconds) {
+            stage->result->relight_seconds = relit[i] - stage->result->frame_seconds[0];
+            return STATUS_OK;
+        }
         if (!status)
             status = stage_draw(stage, view, NULL);
         if (!status)
