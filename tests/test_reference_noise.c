@@ -3,6 +3,7 @@
 #include "reference_world.h"
 
 #include "truth/reference_parts.h"
+#include "wall/embree.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -312,6 +313,49 @@ static void expect_refusal(struct world *world, struct reference_options options
     assert_non_null(strstr(error.text, text));
 }
 
+/* Eight rays down onto a triangle, of sixteen lanes of which the rest are no numbers. */
+static void test_embree__unused_lanes_of_a_packet_may_hold_anything(void **state)
+{
+    (void)state;
+    enum { USED = 8 };
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    struct embree *embree;
+    static const float positions[] = {-1, 0, -1, 1, 0, -1, 0, 0, 2};
+    static const uint32_t triangle[] = {0, 1, 2};
+    static const float identity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    const struct embree_part part = {.first_triangle = 0, .triangles_count = 1};
+    const struct embree_mesh mesh = {.positions = positions,
+                                     .vertices_count = 3,
+                                     .triangles = triangle,
+                                     .triangles_count = 1,
+                                     .parts = &part,
+                                     .parts_count = 1};
+    assert_int_equal(embree_create(arena, 1, &embree, &error), STATUS_OK);
+    assert_int_equal(embree_add_mesh(embree, &mesh, &error), STATUS_OK);
+    embree_add_instance(embree, 0, identity);
+    assert_int_equal(embree_commit(embree, &error), STATUS_OK);
+    for (int coherent = 0; coherent < 2; coherent++) {
+        struct embree_packet packet;
+        memset(&packet, 0xff, sizeof packet);
+        for (int lane = 0; lane < USED; lane++) {
+            packet.origin[0][lane] = lane % 2 ? 3 : 0;
+            packet.origin[1][lane] = 1;
+            packet.origin[2][lane] = packet.direction[0][lane] = packet.direction[2][lane] = 0;
+            packet.direction[1][lane] = -1;
+            packet.near[lane] = 0;
+            packet.far[lane] = INFINITY;
+        }
+        struct embree_packet shadow = packet;
+        embree_intersect(embree, &packet, USED, coherent);
+        for (int lane = 0; lane < USED; lane++)
+            assert_int_equal(packet.geometry[lane], lane % 2 ? EMBREE_NONE : 0);
+        assert_int_equal(embree_occluded(embree, &shadow, USED), 0x55);
+    }
+    embree_destroy(embree);
+    arena_destroy(arena);
+}
+
 static void test_reference__bad_requests_are_refused_by_name(void **state)
 {
     (void)state;
@@ -346,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_reference__a_pixels_share_does_not_depend_on_its_own_variance),
         cmocka_unit_test(test_reference__the_cache_returns_the_same_frame),
         cmocka_unit_test(test_reference__the_key_changes_with_all_that_changes_the_picture),
+        cmocka_unit_test(test_embree__unused_lanes_of_a_packet_may_hold_anything),
         cmocka_unit_test(test_reference__bad_requests_are_refused_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

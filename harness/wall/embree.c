@@ -183,17 +183,28 @@ enum status embree_commit(struct embree *embree, struct error *error)
     return device_status(embree, "building the instances", error);
 }
 
-static void set_valid(int valid[EMBREE_LANES], int count)
+/* Marks the lanes from count on as unused. Where a processor has no vectors of 16, Embree 3 does not
+ * look at `valid`: it takes the lanes for a stream, of which it leaves out rays that end before they
+ * begin, and Debian's ends the program where one of the others is no number. */
+static void lanes_close(struct embree_packet *packet, int valid[EMBREE_LANES], int count)
 {
     for (int i = 0; i < EMBREE_LANES; i++)
         valid[i] = i < count ? -1 : 0;
+    for (int i = count; i < EMBREE_LANES; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            packet->origin[axis][i] = 0;
+            packet->direction[axis][i] = 1;
+        }
+        packet->near[i] = 1;
+        packet->far[i] = 0;
+    }
 }
 
 void embree_intersect(const struct embree *embree, struct embree_packet *packet, int count,
                       bool coherent)
 {
     alignas(64) int valid[EMBREE_LANES];
-    set_valid(valid, count);
+    lanes_close(packet, valid, count);
     for (int i = 0; i < EMBREE_LANES; i++) {
         packet->time[i] = 0;
         packet->mask[i] = UINT32_MAX;
@@ -207,7 +218,7 @@ void embree_intersect(const struct embree *embree, struct embree_packet *packet,
 uint32_t embree_occluded(const struct embree *embree, struct embree_packet *packet, int count)
 {
     alignas(64) int valid[EMBREE_LANES];
-    set_valid(valid, count);
+    lanes_close(packet, valid, count);
     for (int i = 0; i < EMBREE_LANES; i++) {
         packet->time[i] = 0;
         packet->mask[i] = UINT32_MAX;
