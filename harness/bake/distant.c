@@ -16,7 +16,7 @@ struct distant {
     struct distant_plant *plants; /* species */
     struct distant_cells *cells;
     struct distant_light light;
-    bool lit;
+    bool baked, lit;
     struct backdrop_cpu *backdrop;
     uint32_t *near; /* instances of cells that are not distant */
     size_t seen_count;
@@ -36,7 +36,7 @@ static void cells_prepare(struct arena *arena, struct distant *distant, float li
         const struct instance *instance = &scene->instances[i];
         const struct distant_plant *plant = &distant->plants[instance->species];
         reach_m = fmaxf(reach_m, instance->scale * plant->foot_reach_m);
-        extent_m = fmaxf(extent_m, instance->scale * plant->extent_m);
+        extent_m = fmaxf(extent_m, instance->scale * fmaxf(plant->height_m, plant->width_m));
     }
     distant->limit_m = extent_m / limit_px;
     distant->cells = distant_cells_create(arena, scene, reach_m);
@@ -70,7 +70,7 @@ enum status distant_prepare(struct workspace *workspace, const struct scene *sce
     distant->scene = scene;
     distant->plants = ARENA_ARRAY(arena, struct distant_plant, scene->species_count);
     for (size_t i = 0; i < scene->species_count && status == STATUS_OK; i++)
-        status = distant_plant_bake(workspace, scene->species[i].plant, &distant->plants[i]);
+        status = distant_plant_measure(workspace, scene->species[i].plant, &distant->plants[i]);
     if (status == STATUS_OK)
         status = gl_program(workspace->gl, "distant", distant_glsl, NULL, &distant->program,
                             workspace->error);
@@ -151,6 +151,17 @@ static void canvas_size(struct workspace *workspace, struct distant *distant,
         gl_texture(gl, GL_TEXTURE_2D, 1, GL_RGBA32F, view->width_px, view->height_px, 1);
     distant->width_px = view->width_px;
     distant->height_px = view->height_px;
+}
+
+/* When the first distant tree is seen: most scenes have none. */
+static enum status pictures_bake(struct workspace *workspace, struct distant *distant)
+{
+    const struct scene *scene = distant->scene;
+    enum status status = STATUS_OK;
+    for (size_t i = 0; i < scene->species_count && status == STATUS_OK && !distant->baked; i++)
+        status = distant_plant_bake(workspace, scene->species[i].plant, &distant->plants[i]);
+    distant->baked = status == STATUS_OK;
+    return status;
 }
 
 static void light(struct workspace *workspace, struct distant *distant, const struct view *view)
@@ -272,10 +283,14 @@ static void blend(struct workspace *workspace, const struct distant *distant)
     gl->Enable(GL_DEPTH_TEST);
 }
 
-void distant_draw(struct workspace *workspace, struct distant *distant, const struct view *view)
+enum status distant_draw(struct workspace *workspace, struct distant *distant,
+                         const struct view *view)
 {
     if (distant->seen_count == 0)
-        return;
+        return STATUS_OK;
+    enum status status = pictures_bake(workspace, distant);
+    if (status != STATUS_OK)
+        return status;
     canvas_size(workspace, distant, view);
     light(workspace, distant, view);
     bool hides = terrain_hides(distant, view);
@@ -299,4 +314,5 @@ void distant_draw(struct workspace *workspace, struct distant *distant, const st
     if (workspace->counted)
         workspace->tally.lookups += 4 * mixed;
     blend(workspace, distant);
+    return STATUS_OK;
 }

@@ -24,8 +24,10 @@ enum status distant_prepare(struct workspace *workspace, const struct scene *sce
 struct cull_list distant_cull(struct distant *distant, struct cull *cull, const struct view *view,
                               enum cull_order order);
 
-/* Draws what distant_cull found into what is bound, on top of the backdrop. Leaves the blend
- * function (1, 1 - alpha) and blending and depth test on, depth writing off. */
-void distant_draw(struct workspace *workspace, struct distant *distant, const struct view *view);
+/* Draws what distant_cull found into what is bound, on top of the backdrop; the pictures are baked
+ * when it first found any. Leaves the blend function (1, 1 - alpha) and blending and depth test on,
+ * depth writing off. */
+enum status distant_draw(struct workspace *workspace, struct distant *distant,
+                         const struct view *view);
 
 #endif

@@ -167,7 +167,7 @@ static bool sprite_place(const struct distant_canvas *canvas, const struct facin
     sprite->rgb_scale = clear * plant->scale * sprite->alpha_scale;
     for (int i = 0; i < 3; i++)
         sprite->fog[i] = (1 - clear) * canvas->scene->fog.color[i];
-    sprite->depth_m = depth - tree->scale * plant->reach_m;
+    sprite->depth_m = depth - 0.5f * tree->scale * plant->width_m;
     return true;
 }
 

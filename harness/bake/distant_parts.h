@@ -21,8 +21,8 @@ struct distant_level {
 };
 
 struct distant_plant {
-    float reach_m, foot_reach_m;      /* of any vertex from the axis, from the foot */
-    float extent_m;                   /* the longest side of its box */
+    float foot_reach_m;               /* of any vertex from the foot */
+    float height_m, width_m;          /* of its box; of the circle around its axis */
     float middle_m[DISTANT_VIEWS][3]; /* of what is seen, from the foot */
     float low_m[DISTANT_VIEWS][2], texel_m[DISTANT_VIEWS][2]; /* from the middle; of level 0 */
     int levels_count;
@@ -38,7 +38,10 @@ struct distant_light {
     bool two_sided;
 };
 
-/* Bakes or finds the pictures of one plant; they are not lit yet. */
+/* Fills foot_reach_m, height_m and width_m alone. */
+enum status distant_plant_measure(struct workspace *workspace, struct plant *plant,
+                                  struct distant_plant *made);
+/* Bakes or finds the pictures of a plant that is measured; they are not lit yet. */
 enum status distant_plant_bake(struct workspace *workspace, struct plant *plant,
                                struct distant_plant *made);
 /* Lights all of a plant's pictures. */

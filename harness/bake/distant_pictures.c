@@ -75,37 +75,42 @@ static void frames_place(struct distant_plant *plant)
     }
 }
 
-enum status distant_plant_bake(struct workspace *workspace, struct plant *plant,
-                               struct distant_plant *made)
+enum status distant_plant_measure(struct workspace *workspace, struct plant *plant,
+                                  struct distant_plant *made)
 {
-    struct arena *arena = workspace->arena;
     const struct mesh *mesh;
     enum status status = plant_mesh(plant, &mesh, workspace->error);
     if (status != STATUS_OK)
         return status;
+    made->foot_reach_m =
+        hypotf(mesh->radius_m, fmaxf(fabsf(mesh->minimum_m[1]), fabsf(mesh->maximum_m[1])));
+    made->height_m = fmaxf(mesh->maximum_m[1] - mesh->minimum_m[1], 1e-12f);
+    made->width_m = fmaxf(2 * mesh->radius_m, 1e-12f);
+    return STATUS_OK;
+}
+
+enum status distant_plant_bake(struct workspace *workspace, struct plant *plant,
+                               struct distant_plant *made)
+{
+    struct arena *arena = workspace->arena;
     float(*directions)[3] = arena_alloc(arena, DISTANT_VIEWS, sizeof *directions);
     for (size_t v = 0; v < DISTANT_VIEWS; v++)
         views_direction(VIEWS_HEMISPHERE, DISTANT_SIDE, v, directions[v]);
-    float height_m = fmaxf(mesh->maximum_m[1] - mesh->minimum_m[1], 1e-12f);
-    float width_m = fmaxf(2 * mesh->radius_m, 1e-12f), longest_m = fmaxf(height_m, width_m);
+    float longest_m = fmaxf(made->height_m, made->width_m);
     struct slices_request request = {
         .directions_count = DISTANT_VIEWS,
         .directions = (const float(*)[3])directions,
-        .width_px = power_of_two_above(LIT_PX * width_m / longest_m),
-        .height_px = power_of_two_above(LIT_PX * height_m / longest_m),
+        .width_px = power_of_two_above(LIT_PX * made->width_m / longest_m),
+        .height_px = power_of_two_above(LIT_PX * made->height_m / longest_m),
         .count = 1,
         .samples = SAMPLES,
         .cut = SLICES_CLIP,
         .parts = SLICES_BARK | SLICES_LEAVES,
     };
-    status =
+    enum status status =
         slices_create(arena, plant, &request, workspace->threads, &made->slices, workspace->error);
     if (status != STATUS_OK)
         return status;
-    made->reach_m = mesh->radius_m;
-    made->foot_reach_m =
-        hypotf(mesh->radius_m, fmaxf(fabsf(mesh->minimum_m[1]), fabsf(mesh->maximum_m[1])));
-    made->extent_m = longest_m;
     levels_plan(made, request.width_px, request.height_px);
     frames_place(made);
     made->texels = arena_alloc(arena, DISTANT_VIEWS * DISTANT_TURNS * made->texels_count,

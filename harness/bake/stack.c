@@ -254,8 +254,9 @@ enum status stack_trees(struct workspace *workspace, struct stack *stack, const 
                                            : cull_view(stack->cull, view, order);
     enum status status;
     nearby_take(stack->nearby, view, order, &list);
-    if (stack->distant)
-        distant_draw(workspace, stack->distant, view);
+    status = stack->distant ? distant_draw(workspace, stack->distant, view) : STATUS_OK;
+    if (status != STATUS_OK)
+        return status;
     if (stack->front) {
         status = draw_front_to_back(workspace, stack, view, target, &list);
     } else {
