@@ -54,7 +54,7 @@ void plot_axes(struct plot *plot, const struct axis *x, const struct axis *y, co
             tint_rgb(TINT_FAINT));
     const char *const texts[][2] = {
         {"title", plot->title}, {"xlabel", x_label}, {"ylabel", y_label}};
-    static const char *const offsets[] = {" offset 0,-0.5", " offset 0,0.4", " offset 1,0"};
+    static const char *const offsets[] = {" offset 0,-0.5", " offset 0,0.4", " offset 0,0"};
     for (size_t i = 0; i < 3; i++) {
         fprintf(gp, "set %s ", texts[i][0]);
         plot_text(gp, texts[i][1]);

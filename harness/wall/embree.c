@@ -183,9 +183,9 @@ enum status embree_commit(struct embree *embree, struct error *error)
     return device_status(embree, "building the instances", error);
 }
 
-/* Marks the lanes from count on as unused. Where a processor has no vectors of 16, Embree 3 does not
- * look at `valid`: it takes the lanes for a stream, of which it leaves out rays that end before they
- * begin, and Debian's ends the program where one of the others is no number. */
+/* Marks the lanes from count on as unused. Where a processor has no vectors of 16, Embree 3 does
+ * not look at `valid`: it takes the lanes for a stream, of which it leaves out rays that end before
+ * they begin, and Debian's ends the program where one of the others is no number. */
 static void lanes_close(struct embree_packet *packet, int valid[EMBREE_LANES], int count)
 {
     for (int i = 0; i < EMBREE_LANES; i++)
