@@ -155,7 +155,7 @@ try run "${good[@]}" "${once[@]}" --rounds 2 --target rgba8,rgba16f --out "$work
 is 'a resumed run does not calibrate again' "$(grep -c '"kind":"treeline-calibration"' "$work/limits/cells.jsonl")" -eq 2
 is 'its results are all there' "$(told "$work/limits/cells.jsonl")" -eq 7
 try calibrate --seconds 0.05 --size 128x128 --threads 1
-is 'calibrate prints a row for each kind of work' $rc -eq 0 -a "$(grep -cE '^[a-z_0-9]+ +[0-9.e+]+ ' "$work/out")" -eq 21
+is 'calibrate prints a row for each kind of work' $rc -eq 0 -a "$(grep -cE '^[a-z_0-9]+ +[0-9.e+]+ ' "$work/out")" -eq 23
 try calibrate --seconds 0.05 --size 128x128 --json
 is 'calibrate --json prints the record' "$(python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); print(all(m["rate"] > 0 for m in d["measures"].values()))' "$work/out")" = True
 refuses 'a picture too small to calibrate on' 64 "--size: '3x3' is not WxH in pixels, each side in 128..2048" calibrate --size 3x3
