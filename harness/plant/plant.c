@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/hash.h"
+#include "plant/conifer.h"
 #include "plant/generator.h"
 #include "plant/images.h"
 #include "plant/import.h"
@@ -18,7 +19,8 @@ struct plant {
     struct import_request *import; /* NULL: not a file */
     const char *folder;            /* of pictures; NULL: not from pictures */
     struct coloring_request coloring;
-    const struct mesh *mesh; /* NULL: not built yet */
+    const struct conifer *conifer; /* NULL: not a conifer */
+    const struct mesh *mesh;       /* NULL: not built yet */
     bool hashed;
     uint64_t hash;
     struct plant_cost cost;
@@ -101,6 +103,21 @@ struct plant *plant_from_mesh(struct arena *arena, const char *name, const struc
     return plant;
 }
 
+struct plant *plant_from_conifer(struct arena *arena, const char *name,
+                                 const struct conifer *conifer)
+{
+    struct plant *plant = plant_new(arena, name);
+    plant->conifer = conifer;
+    return plant;
+}
+
+enum status plant_conifer(struct plant *plant, const struct conifer **conifer, struct error *error)
+{
+    (void)error;
+    *conifer = plant->conifer;
+    return STATUS_OK;
+}
+
 const char *plant_name(const struct plant *plant)
 {
     return plant->name;
@@ -122,6 +139,8 @@ enum status plant_mesh(struct plant *plant, const struct mesh **mesh, struct err
             status = plant->generator->build(plant->arena, plant->options, &built, error);
             if (status != STATUS_OK)
                 return error_context(error, "plant %s", plant->name);
+        } else if (plant->conifer) {
+            built = conifer_mesh(plant->arena, plant->conifer);
         } else {
             status = plant->folder
                          ? images_mesh(plant->arena, plant->folder, &plant->coloring, &built, error)
@@ -165,6 +184,17 @@ static uint64_t hash_mesh(const struct mesh *mesh)
     return hash;
 }
 
+static uint64_t hash_conifer(const struct conifer *conifer)
+{
+    uint64_t hash = hash_text(0, "conifer");
+    hash = hash_bytes(hash, conifer->branches, conifer->branches_count * sizeof *conifer->branches);
+    hash = hash_bytes(hash, conifer->twigs, conifer->twigs_count * sizeof *conifer->twigs);
+    hash = hash_bytes(hash, conifer->needle_albedo, sizeof conifer->needle_albedo);
+    hash = hash_bytes(hash, conifer->bark_albedo, sizeof conifer->bark_albedo);
+    hash = hash_double(hash_double(hash, conifer->needle_specular), conifer->needle_exponent);
+    return hash_u64(hash_u64(hash, conifer->needle_sides), conifer->branch_sides);
+}
+
 static uint64_t hash_generated(const struct plant *plant)
 {
     char text[64];
@@ -190,6 +220,8 @@ enum status plant_hash(struct plant *plant, uint64_t *hash, struct error *error)
             enum status status = images_hash(plant->folder, &plant->coloring, &plant->hash, error);
             if (status != STATUS_OK)
                 return status;
+        } else if (plant->conifer) {
+            plant->hash = hash_conifer(plant->conifer);
         } else {
             plant->hash = hash_mesh(plant->mesh);
         }

@@ -7,6 +7,7 @@
 #include "plant/mesh.h"
 
 struct plant; /* opaque; belongs to an arena */
+struct conifer;
 
 /* The plants that can be generated, ends with NULL: "poplar", "oak", "hypertexture". */
 extern const char *const plant_generators[];
@@ -42,6 +43,10 @@ struct plant *plant_images(struct arena *arena, const char *folder,
  */
 struct plant *plant_from_mesh(struct arena *arena, const char *name, const struct mesh *mesh);
 
+/* A conifer made by the caller, already finished (plant/conifer.h); it must outlive the plant. */
+struct plant *plant_from_conifer(struct arena *arena, const char *name,
+                                 const struct conifer *conifer);
+
 const char *plant_name(const struct plant *plant);
 /* The generator's option table for documentation; NULL when the generator is unknown. */
 const struct option *plant_options(const char *generator);
@@ -49,6 +54,9 @@ const struct option *plant_options(const char *generator);
 /* The mesh; built at the first call, the same pointer afterwards. The mesh lives in the plant's
  * arena. */
 enum status plant_mesh(struct plant *plant, const struct mesh **mesh, struct error *error);
+
+/* The hierarchy of a conifer; built at the first call. NULL for a plant that is none. */
+enum status plant_conifer(struct plant *plant, const struct conifer **conifer, struct error *error);
 
 /* Changes when the mesh would change: generator's version and parameters, or the file's bytes. For
  * a file this reads the file (and its textures) once. */
