@@ -326,6 +326,42 @@ static void test_papers__a_claim_on_errors_is_decided_by_the_errors_themselves(v
     }
 }
 
+static void test_papers__errors_between_two_directions_are_of_the_views_from_there(void **state)
+{
+    struct arena *arena = *state;
+    static const double azimuths[] = {90, 135, 132, 270}, holes[] = {0.010, 0.012, 0.016, 9};
+    for (int missing = 0; missing < 2; missing++) {
+        struct world world = make_world(arena, 1);
+        struct run *run = make_run(arena, "x", 1);
+        const struct kind kind = {.scene = "closed-azimuth",
+                                  .method = "shaded-texels",
+                                  .options = "path=naive",
+                                  .trees = 1,
+                                  .lod = LOD_HIGH,
+                                  .rate = 10,
+                                  .wobble = 1};
+        add(arena, run, &kind, 1);
+        struct result *result = &run->results[run->results_count - 1];
+        result->views_count = 4;
+        result->views = ARENA_ARRAY(arena, struct result_view, 4);
+        for (int v = 0; v < 4; v++) {
+            result->views[v].compared = !(missing && v == 0);
+            result->views[v].azimuth_deg = azimuths[v];
+            result->views[v].same.value.coverage = holes[v];
+        }
+        size_t count = 0;
+        world.book = book_make(arena, run);
+        world.beside = papers_beside(world.book, &world.paper, 1, &count);
+        const struct paper_finding *finding =
+            finding_of(&world, "senegas-oblique-holes", "path=naive");
+        assert_int_equal(finding->verdict, missing ? PAPER_NOT_MEASURED : PAPER_HOLDS);
+        if (!missing)
+            near(finding->ours.value, 0.014 / 0.010);
+        assert_int_equal(finding_of(&world, "senegas-oblique-holes-closed", "")->verdict,
+                         PAPER_NOT_MEASURED);
+    }
+}
+
 static void test_papers__one_and_two_rounds_leave_every_claim_open(void **state)
 {
     for (size_t rounds = 1; rounds <= 2; rounds++) {
@@ -447,6 +483,8 @@ static void test_papers__bad_files_are_refused_by_one_clear_line(void **state)
         {"\"low\": 3,", "\"low\": 9,", {"band", "low below high"}},
         {"\"low\": 0.9,", "", {"band", "one of them"}},
         {"\"same_flip\"", "\"same_flop\"", {"same_flop", "did you mean 'same_flip'"}},
+        {"\"same_coverage\"", "\"full_coverage\"", {"column", "begins with same_"}},
+        {"[130, 140]", "[130, 400]", {"azimuth_deg", "400"}},
         {"\"unit\": \"fps\"", "\"unit\": \"mph\"", {"mph", "fps|s"}},
         {"{\n", "{,\n", {"not JSON", ":1:"}},
     };
@@ -519,6 +557,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(test_papers__verdicts_follow_from_interval_and_band),
         cmocka_unit_test(test_papers__what_no_cell_decides_is_not_measured),
         cmocka_unit_test(test_papers__a_claim_on_errors_is_decided_by_the_errors_themselves),
+        cmocka_unit_test(test_papers__errors_between_two_directions_are_of_the_views_from_there),
         cmocka_unit_test(test_papers__one_and_two_rounds_leave_every_claim_open),
         cmocka_unit_test(test_papers__a_run_without_a_printed_cell_has_no_section),
         cmocka_unit_test(test_papers__a_variant_of_one_printed_row_has_no_table),

@@ -16,6 +16,8 @@ struct paper_side {
     enum lod lod;
     size_t trees;            /* SIZE_MAX: free */
     int width_px, height_px; /* 0: free */
+    bool has_azimuth;        /* of a column: of the views seen from there alone */
+    float azimuth_deg[2];    /* low, high; of the eye around the trees, 0..360 */
 };
 
 /* One printed value. */
@@ -131,8 +133,9 @@ struct paper_sample {
 /* One a row of the book, in its order: rates or times. */
 struct paper_sample *paper_samples(const struct book *book, enum paper_unit unit,
                                    enum paper_statistic statistic, size_t *rounds);
-/* The same of a column, as a single round. */
-struct paper_sample *paper_samples_column(const struct book *book, const struct column *column);
+/* The same of a column, as a single round; where the side names an azimuth, of the views within. */
+struct paper_sample *paper_samples_column(const struct book *book, const struct column *column,
+                                          const struct paper_side *side);
 bool paper_side_matches(const struct paper_side *side, const struct paper_sample *sample);
 
 #endif

@@ -21,7 +21,7 @@ enum { ROUNDS_MIN = 3 };
 struct court {
     struct arena *arena;
     const struct paper_claim *claim;
-    const struct paper_sample *samples;
+    const struct paper_sample *samples, *over_samples; /* of either side, of the same cells */
     size_t samples_count, rounds;
     const char *variant; /* options of the first side; NULL: any */
 };
@@ -81,9 +81,9 @@ static void poll_ratios(struct court *court, struct poll *poll)
     double *logs = ARENA_ARRAY(court->arena, double, court->rounds + 1);
     for (size_t i = 0; i < court->samples_count; i++)
         for (size_t k = 0; k < court->samples_count; k++) {
-            const struct paper_sample *a = &court->samples[i], *b = &court->samples[k];
-            if (i == k || !is_of(court, a) || !paper_side_matches(&court->claim->over, b) ||
-                !is_alike(court, a, b))
+            const struct paper_sample *a = &court->samples[i], *b = &court->over_samples[k];
+            if ((i == k && !court->claim->of.has_azimuth) || !is_of(court, a) ||
+                !paper_side_matches(&court->claim->over, b) || !is_alike(court, a, b))
                 continue;
             for (size_t r = 0; r < court->rounds; r++)
                 logs[r] =
@@ -231,6 +231,7 @@ static struct interval printed_figure(struct arena *arena, const struct paper *p
     if (claim->column)
         return (struct interval){NAN, NAN, NAN};
     court.samples = printed_samples(arena, paper, claim->statistic, &court.samples_count);
+    court.over_samples = court.samples;
     struct paper_finding finding = find(&court, NULL);
     return (struct interval){finding.ours.value, finding.smallest, finding.largest};
 }
@@ -238,12 +239,14 @@ static struct interval printed_figure(struct arena *arena, const struct paper *p
 /* The claim's findings from samples of its statistic, one a variant of the first side. */
 static size_t judge(const struct book *book, const struct paper *paper,
                     const struct paper_claim *claim, const struct paper_sample *samples,
-                    size_t rounds, struct paper_finding *findings)
+                    const struct paper_sample *over_samples, size_t rounds,
+                    struct paper_finding *findings)
 {
     struct arena *arena = book->arena;
     struct court court = {.arena = arena,
                           .claim = claim,
                           .samples = samples,
+                          .over_samples = over_samples,
                           .samples_count = book->rows_count,
                           .rounds = rounds};
     struct interval printed = printed_figure(arena, paper, claim);
@@ -280,14 +283,15 @@ struct paper_finding *paper_judge(const struct book *book, const struct paper *p
     for (size_t i = 0; i < paper->claims_count; i++) {
         const struct paper_claim *claim = &paper->claims[i];
         if (claim->column) {
-            *count += judge(book, paper, claim, paper_samples_column(book, claim->column), 1,
-                            findings + *count);
+            *count += judge(
+                book, paper, claim, paper_samples_column(book, claim->column, &claim->of),
+                paper_samples_column(book, claim->column, &claim->over), 1, findings + *count);
             continue;
         }
         if (claim->kind != PAPER_UNTESTED) {
             const struct paper_sample **of = &samples[claim->statistic];
             *of = *of ? *of : paper_samples(book, PAPER_FPS, claim->statistic, &rounds);
-            *count += judge(book, paper, claim, *of, rounds, findings + *count);
+            *count += judge(book, paper, claim, *of, *of, rounds, findings + *count);
             continue;
         }
         static const struct interval none = {NAN, NAN, NAN};

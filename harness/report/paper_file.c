@@ -101,6 +101,7 @@ static void read_side(struct json *object, struct paper_side *side)
     side->scene = json_text(object, "scene", NULL);
     read_cell(object, side);
     read_size(object, side);
+    side->has_azimuth = json_vector(object, "azimuth_deg", side->azimuth_deg, 2, 0, 360);
     if (object && !side->method)
         json_fail(object, "method", "is missing; a text is required");
 }
@@ -137,6 +138,10 @@ static void read_test(struct json *test, struct paper_claim *claim)
         json_fail(test, of ? "over" : "of", "needed with kind ratio alone (of: always)");
     read_side(of, &claim->of);
     read_side(over, &claim->over);
+    if ((claim->of.has_azimuth || claim->over.has_azimuth) &&
+        !(claim->column >= &column_table[COLUMN_same_rmse] &&
+          claim->column < &column_table[COLUMN_full_rmse]))
+        json_fail(test, "column", "azimuth_deg of a side asks for a column that begins with same_");
 }
 
 static void read_claim(struct json *object, struct paper_claim *claim)

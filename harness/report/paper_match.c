@@ -73,13 +73,35 @@ struct paper_sample *paper_samples(const struct book *book, enum paper_unit unit
     return samples;
 }
 
-struct paper_sample *paper_samples_column(const struct book *book, const struct column *column)
+/* The mean of an error against the reference with the same effects over the views that are seen
+ * from an azimuth; NaN where there is none. */
+static double value_seen_from(const struct row *row, const struct column *column,
+                              const float azimuth_deg[2])
+{
+    const struct metric_info *metric = &metric_table[column - column_table - COLUMN_same_rmse];
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < row->seen->views_count && row->compared; i++) {
+        const struct result_view *view = &row->seen->views[i];
+        if (!view->compared || !(view->azimuth_deg >= (double)azimuth_deg[0] &&
+                                 view->azimuth_deg <= (double)azimuth_deg[1]))
+            continue;
+        sum += metric_of(&view->same.value, metric);
+        count++;
+    }
+    return count ? sum / (double)count : NAN;
+}
+
+struct paper_sample *paper_samples_column(const struct book *book, const struct column *column,
+                                          const struct paper_side *side)
 {
     struct paper_sample *samples =
         ARENA_ARRAY(book->arena, struct paper_sample, book->rows_count + 1);
     for (size_t i = 0; i < book->rows_count; i++) {
         samples[i] = sample_of(book->arena, &book->rows[i], 1);
-        samples[i].values[0] = book->rows[i].values[column - column_table];
+        samples[i].values[0] = side->has_azimuth
+                                   ? value_seen_from(&book->rows[i], column, side->azimuth_deg)
+                                   : book->rows[i].values[column - column_table];
     }
     return samples;
 }
