@@ -211,21 +211,16 @@ static void test_conifer__refuses_what_is_no_plant_and_names_it(void **state)
     refused(conifer, "0 branches; allowed: 1..");
 }
 
+/* clang-format off */
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(
-            test_needle__has_its_length_its_angle_and_its_place_on_the_axis, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_conifer__counts_as_many_needles_as_its_mesh_has, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(
-            test_mesh__is_closed_and_keeps_the_needles_area_at_any_number_of_sides, setup,
-            teardown),
+        cmocka_unit_test_setup_teardown(test_needle__has_its_length_its_angle_and_its_place_on_the_axis, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_conifer__counts_as_many_needles_as_its_mesh_has, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_mesh__is_closed_and_keeps_the_needles_area_at_any_number_of_sides, setup, teardown),
         cmocka_unit_test_setup_teardown(test_mesh__lies_within_the_bounds, setup, teardown),
-        cmocka_unit_test_setup_teardown(
-            test_plant__gives_the_hierarchy_of_a_conifer_and_none_of_a_poplar, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_conifer__refuses_what_is_no_plant_and_names_it, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(test_plant__gives_the_hierarchy_of_a_conifer_and_none_of_a_poplar, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_conifer__refuses_what_is_no_plant_and_names_it, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 #include "plant/generator.h"
 #include "plant/images.h"
 #include "plant/import.h"
+#include "plant/lsystem.h"
 
 #include <stdalign.h>
 #include <string.h>
@@ -19,7 +20,8 @@ struct plant {
     struct import_request *import; /* NULL: not a file */
     const char *folder;            /* of pictures; NULL: not from pictures */
     struct coloring_request coloring;
-    const struct conifer *conifer; /* NULL: not a conifer */
+    struct lsystem *lsystem;       /* NULL: not of a grammar */
+    const struct conifer *conifer; /* NULL: not a conifer, or not grown yet */
     const struct mesh *mesh;       /* NULL: not built yet */
     bool hashed;
     uint64_t hash;
@@ -111,9 +113,31 @@ struct plant *plant_from_conifer(struct arena *arena, const char *name,
     return plant;
 }
 
+enum status plant_lsystem(struct arena *arena, const char *path, const char *options,
+                          struct plant **plant, struct error *error)
+{
+    struct lsystem *lsystem = NULL;
+    enum status status = lsystem_load(arena, path, &lsystem, error);
+    if (status != STATUS_OK)
+        return status;
+    status = lsystem_set(lsystem, options, error);
+    if (status != STATUS_OK)
+        return error_context(error, "plant %s", path);
+    const char *slash = strrchr(path, '/');
+    *plant = plant_new(arena, slash ? slash + 1 : path);
+    (*plant)->lsystem = lsystem;
+    return STATUS_OK;
+}
+
 enum status plant_conifer(struct plant *plant, const struct conifer **conifer, struct error *error)
 {
-    (void)error;
+    if (plant->lsystem && !plant->conifer) {
+        struct conifer *grown = NULL;
+        enum status status = lsystem_conifer(plant->arena, plant->lsystem, &grown, error);
+        if (status != STATUS_OK)
+            return status;
+        plant->conifer = grown;
+    }
     *conifer = plant->conifer;
     return STATUS_OK;
 }
@@ -139,8 +163,12 @@ enum status plant_mesh(struct plant *plant, const struct mesh **mesh, struct err
             status = plant->generator->build(plant->arena, plant->options, &built, error);
             if (status != STATUS_OK)
                 return error_context(error, "plant %s", plant->name);
-        } else if (plant->conifer) {
-            built = conifer_mesh(plant->arena, plant->conifer);
+        } else if (plant->conifer || plant->lsystem) {
+            const struct conifer *conifer = NULL;
+            status = plant_conifer(plant, &conifer, error);
+            if (status != STATUS_OK)
+                return status;
+            built = conifer_mesh(plant->arena, conifer);
         } else {
             status = plant->folder
                          ? images_mesh(plant->arena, plant->folder, &plant->coloring, &built, error)
@@ -220,6 +248,8 @@ enum status plant_hash(struct plant *plant, uint64_t *hash, struct error *error)
             enum status status = images_hash(plant->folder, &plant->coloring, &plant->hash, error);
             if (status != STATUS_OK)
                 return status;
+        } else if (plant->lsystem) {
+            plant->hash = lsystem_hash(plant->lsystem);
         } else if (plant->conifer) {
             plant->hash = hash_conifer(plant->conifer);
         } else {

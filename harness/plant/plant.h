@@ -18,6 +18,12 @@ extern const char *const plant_generators[];
 enum status plant_generated(struct arena *arena, const char *generator, const char *options,
                             struct plant **plant, struct error *error);
 
+/* A plant of a grammar (plant/lsystem.h, scenes/plants/): the file, and its parameters as text
+ * ("boughs=6,seed=3", NULL: the file's own). The file is read and checked here; nothing is grown.
+ */
+enum status plant_lsystem(struct arena *arena, const char *path, const char *options,
+                          struct plant **plant, struct error *error);
+
 struct plant_import {
     double height_m;  /* 0: keep the file's units as metres; else scale to this height */
     bool z_up;        /* the file's up axis is +z */
@@ -55,7 +61,8 @@ const struct option *plant_options(const char *generator);
  * arena. */
 enum status plant_mesh(struct plant *plant, const struct mesh **mesh, struct error *error);
 
-/* The hierarchy of a conifer; built at the first call. NULL for a plant that is none. */
+/* The hierarchy of a conifer, of a grammar or given; grown at the first call. NULL for a plant that
+ * is none. */
 enum status plant_conifer(struct plant *plant, const struct conifer **conifer, struct error *error);
 
 /* Changes when the mesh would change: generator's version and parameters, or the file's bytes. For

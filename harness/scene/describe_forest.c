@@ -23,8 +23,8 @@ static void describe_import(struct arena *arena, struct json *plant, struct plan
     entry->import.leaf = json_text(import, "leaf", NULL);
     entry->import.leaf_albedo = describe_albedo(arena, import, "leaf_albedo");
     entry->import.bark_albedo = describe_albedo(arena, import, "bark_albedo");
-    if (import && !entry->file)
-        json_fail(plant, "import", "stands without a file; allowed: together with file");
+    if (import && (!entry->file || entry->generator))
+        json_fail(plant, "import", "stands without a mesh's file; allowed: together with file");
 }
 
 static void describe_coloring(struct json *plant, struct plant_entry *entry)
@@ -56,7 +56,11 @@ static void describe_plant(struct arena *arena, struct json *plant, struct plant
     entry->options = json_text(plant, "options", NULL);
     entry->file = describe_path(arena, scene_path, json_text(plant, "file", NULL));
     entry->images = describe_path(arena, scene_path, json_text(plant, "images", NULL));
-    if (!entry->generator + !entry->file + !entry->images != 2)
+    bool lsystem = entry->generator && strcmp(entry->generator, "lsystem") == 0;
+    if (lsystem && (!entry->file || entry->images))
+        json_fail(plant, "file", "%s; allowed: a grammar's file beside the generator lsystem",
+                  entry->images ? "images stand beside it" : "is missing");
+    else if (!lsystem && !entry->generator + !entry->file + !entry->images != 2)
         json_fail(plant, "generator", "%s; allowed: either a generator, a file or images",
                   entry->file     ? "stands beside a file"
                   : entry->images ? "stands beside images"
@@ -66,9 +70,9 @@ static void describe_plant(struct arena *arena, struct json *plant, struct plant
                   entry->options);
     describe_import(arena, plant, entry);
     describe_coloring(plant, entry);
-    const char *fallback = entry->generator ? entry->generator
-                           : entry->file    ? json_text(plant, "file", "")
-                                            : json_text(plant, "images", "");
+    const char *fallback = entry->file        ? json_text(plant, "file", "")
+                           : entry->generator ? entry->generator
+                                              : json_text(plant, "images", "");
     entry->name = json_text(plant, "name", fallback);
     entry->weight = (float)json_number(plant, "weight", 1, 0, 1e6);
     describe_range(plant, "scale", 0.001, 1000, entry->scale);

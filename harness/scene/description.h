@@ -15,8 +15,8 @@ enum { TREES_MAX = 4000000, SIDE_PX_MAX = 16384, TERRAIN_SAMPLES_MAX = 4097 };
 struct plant_entry {
     const char *name;
     const char *generator, *options; /* a generated plant; options may be NULL */
-    const char *file;                /* or a mesh's path */
-    const char *images;              /* or a folder of pictures; two of the three are NULL */
+    const char *file;                /* or a mesh's path; of "lsystem", the grammar's */
+    const char *images; /* or a folder of pictures; but for "lsystem" two of the three are NULL */
     struct plant_import import;
     struct coloring_request coloring; /* of images; the box is the folder's */
     float weight, scale[2], stretch[2];

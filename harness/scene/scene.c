@@ -52,6 +52,8 @@ static enum status request_apply(struct description *description,
 static enum status plant_make(struct arena *arena, const struct plant_entry *entry,
                               struct plant **plant, struct error *error)
 {
+    if (entry->file && entry->generator)
+        return plant_lsystem(arena, entry->file, entry->options, plant, error);
     if (entry->file)
         return plant_file(arena, entry->file, &entry->import, plant, error);
     if (entry->generator)
