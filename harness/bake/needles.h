@@ -37,6 +37,8 @@
 
 #include "bake/needles_twig.h"
 
+#include "bake/needles_paper.h"
+
 #undef real
 #undef MATH
 

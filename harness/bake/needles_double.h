@@ -13,6 +13,7 @@
 #define real double
 #define MATH(function) function
 #define needles_axis needles_axis_double
+#define needles_clamp needles_clamp_double
 #define needles_cone_cover needles_cone_cover_double
 #define needles_cone_panel needles_cone_panel_double
 #define needles_cone_seen needles_cone_seen_double
@@ -36,6 +37,14 @@
 #define needles_needle_shade needles_needle_shade_double
 #define needles_nodes needles_nodes_double
 #define needles_nodes_of needles_nodes_of_double
+#define needles_paper_cone_shade needles_paper_cone_shade_double
+#define needles_paper_diffuse needles_paper_diffuse_double
+#define needles_paper_lines needles_paper_lines_double
+#define needles_paper_lit needles_paper_lit_double
+#define needles_paper_opacities needles_paper_opacities_double
+#define needles_paper_reflect needles_paper_reflect_double
+#define needles_paper_sums needles_paper_sums_double
+#define needles_paper_twig_shade needles_paper_twig_shade_double
 #define needles_radial_opacity needles_radial_opacity_double
 #define needles_reflect needles_reflect_double
 #define needles_shade needles_shade_double
@@ -59,9 +68,12 @@
 
 #include "bake/needles_twig.h"
 
+#include "bake/needles_paper.h"
+
 #undef real
 #undef MATH
 #undef needles_axis
+#undef needles_clamp
 #undef needles_cone_cover
 #undef needles_cone_panel
 #undef needles_cone_seen
@@ -85,6 +97,14 @@
 #undef needles_needle_shade
 #undef needles_nodes
 #undef needles_nodes_of
+#undef needles_paper_cone_shade
+#undef needles_paper_diffuse
+#undef needles_paper_lines
+#undef needles_paper_lit
+#undef needles_paper_opacities
+#undef needles_paper_reflect
+#undef needles_paper_sums
+#undef needles_paper_twig_shade
 #undef needles_radial_opacity
 #undef needles_reflect
 #undef needles_shade
