@@ -17,7 +17,8 @@ static const struct option table[] = {
     OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
     OPTION(struct options, smooth, 0, 0, 1, "levels",
-           "over which a level of detail turns into the next, both being drawn; 0: at once"),
+           "over which a level of detail turns into the next, both being drawn, and voxels into far "
+           "pictures and these into cells; 0: at once"),
     OPTION(struct options, slab, 0, 0, 16, "voxels",
            "where crowns interlock they are drawn together, in slabs so deep: when thin, Chiba's sum "
            "of densities; 0: each tree whole, the nearer first"),

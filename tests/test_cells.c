@@ -108,6 +108,8 @@ static size_t trees_listed(const struct cells *cells, const struct cells_list *l
     return in_cells;
 }
 
+static const struct cells_limits none = {0, 0, 0}, some = {2, 5, 0};
+
 static void test_cells__what_culling_lists_is_listed_once_alone_or_in_a_cell(void **state)
 {
     (void)state;
@@ -125,15 +127,49 @@ static void test_cells__what_culling_lists_is_listed_once_alone_or_in_a_cell(voi
         memset(culled, 0, sizeof culled);
         for (size_t i = 0; i < all.count; i++)
             culled[all.instances[i]] = 1;
-        struct cells_list alone = cells_view(cells, &view, 0, 0, 2);
+        struct cells_list alone = cells_view(cells, &view, &none, 2);
         assert_int_equal(trees_listed(cells, &alone, times), 0);
         assert_memory_equal(times, culled, TREES);
-        struct cells_list list = cells_view(cells, &view, 2, 5, 2);
+        struct cells_list list = cells_view(cells, &view, &some, 2);
         in_cells += trees_listed(cells, &list, times);
         for (size_t i = 0; i < TREES; i++) /* a cell may hold some that are outside */
             assert_true(times[i] == 1 || (times[i] == 0 && !culled[i]));
     }
     assert_true(in_cells > TREES);
+    arena_destroy(arena);
+}
+
+static void test_cells__shares_of_what_turns_into_cells_sum_to_a_whole(void **state)
+{
+    (void)state;
+    static const struct cells_limits gradual = {2, 5, 1};
+    static int shares[TREES];
+    struct arena *arena = arena_create(0);
+    struct cull_bound bounds[2];
+    struct scene *scene = random_forest(arena, bounds);
+    struct cells *cells = cells_create(arena, scene, bounds);
+    struct cull *cull = cull_create(arena, scene, bounds);
+    size_t parts = 0;
+    for (int k = 0; k < 4; k++) {
+        struct view view;
+        view_look_at(scene, eyes[k], targets[k], &view);
+        struct cells_list list = cells_view(cells, &view, &gradual, 2);
+        memset(shares, 0, sizeof shares);
+        for (size_t i = 0; i < list.count; i++) {
+            const uint32_t *trees = &list.entries[i];
+            size_t count = 1;
+            if (list.entries[i] >= TREES)
+                count = cells_trees(cells, list.entries[i] - TREES, &trees);
+            for (size_t t = 0; t < count; t++)
+                shares[trees[t]] += list.shares[i];
+            parts += list.shares[i] < 255;
+            assert_true(i == 0 || list.depths_m[i - 1] <= list.depths_m[i]);
+        }
+        struct cull_list all = cull_view(cull, &view, CULL_AS_PLACED);
+        for (size_t i = 0; i < all.count; i++)
+            assert_in_range(shares[all.instances[i]], 252, 258);
+    }
+    assert_true(parts > TREES / 10);
     arena_destroy(arena);
 }
 
@@ -146,9 +182,9 @@ static void test_cells__a_forest_behind_the_eye_lists_nothing(void **state)
     struct cells *cells = cells_create(arena, scene, bounds);
     struct view view;
     view_look_at(scene, (float[3]){0, 50, 400}, (float[3]){0, 50, 900}, &view);
-    assert_int_equal(cells_view(cells, &view, 2, 1, 1).count, 0);
+    assert_int_equal(cells_view(cells, &view, &some, 1).count, 0);
     scene->instances_count = 0;
-    assert_int_equal(cells_view(cells_create(arena, scene, bounds), &view, 2, 1, 1).count, 0);
+    assert_int_equal(cells_view(cells_create(arena, scene, bounds), &view, &some, 1).count, 0);
     arena_destroy(arena);
 }
 
@@ -163,9 +199,9 @@ static void test_cells__threads_change_no_entry(void **state)
     for (int k = 0; k < 4; k++) {
         struct view view;
         view_look_at(scene, eyes[k], targets[k], &view);
-        struct cells_list one = cells_view(cells, &view, 2, 5, 1);
+        struct cells_list one = cells_view(cells, &view, &some, 1);
         memcpy(kept, one.entries, one.count * sizeof *kept);
-        struct cells_list three = cells_view(cells, &view, 2, 5, 3);
+        struct cells_list three = cells_view(cells, &view, &some, 3);
         assert_int_equal(three.count, one.count);
         assert_memory_equal(three.entries, kept, one.count * sizeof *kept);
     }
@@ -177,6 +213,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cells__a_cell_sums_the_trees_that_it_holds),
         cmocka_unit_test(test_cells__what_culling_lists_is_listed_once_alone_or_in_a_cell),
+        cmocka_unit_test(test_cells__shares_of_what_turns_into_cells_sum_to_a_whole),
         cmocka_unit_test(test_cells__a_forest_behind_the_eye_lists_nothing),
         cmocka_unit_test(test_cells__threads_change_no_entry),
     };

@@ -30,12 +30,19 @@ struct cells_list {
     size_t count;
     uint32_t *entries;
     float *depths_m; /* of spheres' centres along view->forward; a cell's: of its mean tree */
+    uint8_t *shares; /* of 255, of what is listed of a tree more than once; NULL: all is whole */
 };
 
-/* Each tree that cull_view lists is listed by itself or within one cell. A cell spreads most_px
- * at most over the picture, and its trees' spheres are of tree_px at most; most_px 0: no cells. */
-struct cells_list cells_view(struct cells *cells, const struct view *view, float most_px,
-                             float tree_px, int threads);
+/* When cells stand for trees: a cell spreads most_px at most over the picture, and its trees'
+ * spheres are of tree_px at most; most_px 0: no cells. Over so many octaves below these limits a
+ * cell gradually replaces what is in it, and both are listed; 0: at once. */
+struct cells_limits {
+    float most_px, tree_px, octaves;
+};
+/* Each tree that cull_view lists is listed by itself or within one cell; or in several of these,
+ * with shares that sum to a whole but for rounding. */
+struct cells_list cells_view(struct cells *cells, const struct view *view,
+                             const struct cells_limits *limits, int threads);
 
 size_t cells_count(const struct cells *cells);
 const struct cells_sums *cells_sums(const struct cells *cells, uint32_t cell);

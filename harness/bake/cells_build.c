@@ -196,8 +196,10 @@ struct cells *cells_create(struct arena *arena, const struct scene *scene,
     cells->spheres = arena_alloc(arena, count, sizeof *cells->spheres);
     cells->instances = ARENA_ARRAY(arena, uint32_t, count);
     for (int i = 0; i < 2; i++) {
-        cells->entries[i] = ARENA_ARRAY(arena, uint32_t, count);
-        cells->depths_m[i] = ARENA_ARRAY(arena, float, count);
+        cells->entries[i] = ARENA_ARRAY(arena, uint32_t, count + most);
+        cells->depths_m[i] = ARENA_ARRAY(arena, float, count + most);
+        cells->shares[i] = ARENA_ARRAY(arena, uint8_t, count + most);
+        cells->order[i] = ARENA_ARRAY(arena, uint32_t, count + most);
     }
     cells->runs = ARENA_ARRAY(arena, struct cells_run, CELLS_RUNS + scene->species_count);
     struct item *items = ARENA_ARRAY(passing, struct item, count);

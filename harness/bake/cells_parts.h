@@ -17,7 +17,7 @@ struct cells_node {
 /* A part of the hierarchy that one thread looks through, and what it found there. */
 struct cells_run {
     uint32_t node;
-    size_t count; /* listed, from the node's first tree's place on */
+    size_t count; /* listed, from the node's place on */
 };
 enum { CELLS_RUNS = 128 };
 
@@ -31,8 +31,16 @@ struct cells {
     struct cells_sums *sums; /* one a node */
     float (*spheres)[4];     /* of each tree, in the cells' order: centre, radius, m */
     uint32_t *instances;     /* their indices in the scene */
-    uint32_t *entries[2];    /* the list and its scratch, one a tree */
+    uint32_t *entries[2];    /* the list and its scratch, one a tree and one a node */
     float *depths_m[2];
+    uint8_t *shares[2];
+    uint32_t *order[2]; /* while the list is sorted */
 };
+
+/* In the unsorted list, of what is listed of a node: a place for each tree and each cell. */
+static inline size_t cells_place(const struct cells *cells, uint32_t number)
+{
+    return (size_t)cells->nodes[number].begin + number;
+}
 
 #endif

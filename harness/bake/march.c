@@ -80,15 +80,16 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
     if (status)
         return status;
     march->trees = ARENA_ARRAY(workspace->arena, struct march_tree, scene->instances_count);
-    march->seen = ARENA_ARRAY(workspace->arena, struct march_seen, scene->instances_count);
-    if (options->slab > 0)
-        march->spans = ARENA_ARRAY(workspace->arena, struct march_span, scene->instances_count);
     march_trees_fill(scene, march->trees);
     march->fars = march_fars_create(workspace->arena, scene, march->trees, workspace->threads);
     if (options->cells && !scene_is_stretched(scene)) /* cells know one shape of a species */
         march->cells = cells_create(workspace->arena, scene, bounds);
     else
         march->cull = cull_create(workspace->arena, scene, bounds);
+    size_t most = scene->instances_count + (march->cells ? cells_count(march->cells) : 0);
+    march->seen = ARENA_ARRAY(workspace->arena, struct march_seen, most);
+    if (options->slab > 0)
+        march->spans = ARENA_ARRAY(workspace->arena, struct march_span, most);
     if (workspace->effects & EFFECT_SUN_SHADOWS)
         return march_shadows_create(workspace, scene, options, march->species, march->trees,
                                     march->cells, &march->shadows);
@@ -166,8 +167,10 @@ static void entry_fetch(const struct march *march, const struct cells_list *list
 /* Where entry k of the list is seen; of a tree or cell below a pixel, what it is seen as is asked
  * for. */
 static void entry_see(struct march *march, const struct march_view *picture, int thread,
-                      uint32_t entry, float depth_m, size_t k)
+                      const struct cells_list *list, size_t k)
 {
+    const uint32_t entry = list->entries[k];
+    const uint8_t gone = list->shares ? 255 - list->shares[k] : 0;
     struct march_seen *seen = &march->seen[k];
     float middle[3];
     if (is_cell(march, entry)) {
@@ -175,16 +178,18 @@ static void entry_see(struct march *march, const struct march_view *picture, int
         const struct cells_sums *sums = cells_sums(march->cells, cell);
         march_cell_middle(picture, sums, middle);
         *seen = march_cell_see(picture, sums, middle);
+        seen->gone = gone;
         if (march->spans)
             march->spans[k] = (struct march_span){.near_m = middle[2], .far_m = middle[2]};
         march_fars_ask(march->fars, thread, picture->view, sums->species, MARCH_TURNS, middle);
         return;
     }
     const struct march_tree *tree = &march->trees[entry];
-    *seen = march_see(picture, tree, depth_m);
+    *seen = march_see(picture, tree, list->depths_m[k]);
+    seen->gone = gone;
     if (march->spans)
         march->spans[k] = march_span_of(picture, tree, seen->level + (seen->next > 0));
-    if (is_splat(seen)) {
+    if (is_splat(seen) || seen->far > 0) {
         march_middle(picture, tree, middle);
         march_fars_ask(march->fars, thread, picture->view, tree->species, tree->turn, middle);
     }
@@ -206,7 +211,7 @@ static void bin(struct workspace *workspace, struct march *march, const struct m
         size_t end = list->count * ((size_t)thread + 1) / (size_t)threads;
         for (size_t k = list->count * (size_t)thread / (size_t)threads; k < end; k++) {
             entry_fetch(march, list, k + SOON);
-            entry_see(march, picture, thread, list->entries[k], list->depths_m[k], k);
+            entry_see(march, picture, thread, list, k);
             tree_bin(tiles, &march->seen[k], march->tile_first + run * ((size_t)thread + 1), NULL,
                      0);
         }
@@ -236,8 +241,9 @@ static void far_darken(struct march_far *far, float share)
         far->rgb[c] -= (1 - share) * far->sun_rgb[c];
 }
 
+/* share: of its optical depth. */
 static void entry_splat(const struct march *march, const struct march_view *picture, uint32_t entry,
-                        bool is_sprite, struct canvas *canvas)
+                        bool is_sprite, float share, struct canvas *canvas)
 {
     struct march_splat splat;
     struct march_far far;
@@ -258,14 +264,29 @@ static void entry_splat(const struct march *march, const struct march_view *pict
             const struct march_far *its;
             const struct march_sprite *sprite = march_fars_sprite(
                 march->fars, picture->view, tree->species, tree->turn, middle, &its);
-            canvas_sprite(canvas, picture, tree, sprite, its, &far);
+            canvas_sprite(canvas, picture, tree, sprite, its, &far, share);
             return;
         }
         if (picture->shadows)
             far_darken(&far, march_shadows_of_tree(picture->shadows, entry));
         march_splat_of(picture, tree, &far, &splat);
     }
+    splat.share = share;
     canvas_splat(canvas, &splat, &picture->rays);
+}
+
+/* What is not marched of entry k: all of a splat, the far share of others. */
+static void entry_far(const struct march *march, const struct march_view *picture,
+                      const struct cells_list *list, uint32_t k, struct canvas *canvas)
+{
+    const struct march_seen *seen = &march->seen[k];
+    const float kept = 1 - (float)seen->gone / 255, far = (float)seen->far / 255;
+    if (is_splat(seen))
+        entry_splat(march, picture, list->entries[k], seen->level == MARCH_SPRITE, (1 - far) * kept,
+                    canvas);
+    bool is_sprite = !is_splat(seen) && march->options.far_px > MARCH_SMALL_PX;
+    if (seen->far > 0)
+        entry_splat(march, picture, list->entries[k], is_sprite, far * kept, canvas);
 }
 
 /* The end of the run of entries that reach into each other's depths. */
@@ -320,6 +341,8 @@ static void interlocked_draw(const struct march *march, const struct march_view 
         }
         from_m = to_m;
     }
+    for (uint32_t at = first; at < last; at++)
+        entry_far(march, picture, list, march->entries[at], canvas);
 }
 
 /* Returns the lookups of its rays. */
@@ -335,8 +358,7 @@ static uint64_t tile_draw(const struct march *march, const struct march_view *pi
         uint32_t k = march->entries[at];
         entry_fetch(march, list, at + SOON < end ? march->entries[at + SOON] : k);
         if (is_splat(&march->seen[k])) {
-            entry_splat(march, picture, list->entries[k], march->seen[k].level == MARCH_SPRITE,
-                        canvas);
+            entry_far(march, picture, list, k, canvas);
         } else if (march->spans) {
             uint32_t last = interlocked_end(march, at, end);
             interlocked_draw(march, picture, list, at, last, canvas);
@@ -344,6 +366,7 @@ static uint64_t tile_draw(const struct march *march, const struct march_view *pi
         } else {
             canvas_march(canvas, picture, &march->trees[list->entries[k]], &march->seen[k], 0,
                          INFINITY);
+            entry_far(march, picture, list, k, canvas);
         }
     }
     if (picture->shadows)
@@ -358,10 +381,11 @@ static uint64_t tile_draw(const struct march *march, const struct march_view *pi
 /* What is in view, front to back: by cells, or tree by tree. */
 static struct cells_list list_of(struct march *march, const struct view *view, int threads)
 {
+    const struct cells_limits limits = {MARCH_CELL_PX, MARCH_SMALL_PX, march->options.smooth};
     if (march->cells)
-        return cells_view(march->cells, view, MARCH_CELL_PX, MARCH_SMALL_PX, threads);
+        return cells_view(march->cells, view, &limits, threads);
     struct cull_list list = cull_view(march->cull, view, CULL_FRONT_TO_BACK);
-    return (struct cells_list){list.count, list.instances, list.depths_m};
+    return (struct cells_list){list.count, list.instances, list.depths_m, NULL};
 }
 
 enum status march_draw(struct workspace *workspace, struct march *march, const struct view *view,

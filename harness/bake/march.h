@@ -22,7 +22,8 @@ struct march_options {
     float stop;            /* a ray ends when it lets through no more */
     float step;            /* voxels */
     float bias;            /* added to the level of detail */
-    float smooth;          /* levels over which one turns into the next; 0: at once */
+    float smooth;          /* levels over which one turns into the next, and octaves over which
+                              voxels, far pictures and cells do; 0: at once */
     float slab;            /* voxels; 0: trees are drawn whole */
     int tile_px;           /* side of a tile */
     float far_px;          /* trees of so large a radius, px, are drawn from a far picture; none

@@ -102,8 +102,11 @@ bool canvas_hides(const struct march_splat *splat, const struct backdrop_rays *r
  * what it ought to be where less than 2 is hidden. */
 static float splat_share(const struct march_splat *splat, float area)
 {
-    if (!splat->is_many)
-        return area < 1 ? area : 1;
+    if (!splat->is_many) {
+        float hides = area < 1 ? area : 1;
+        return splat->share < 1 ? canvas_part(hides, splat->share) : hides;
+    }
+    area *= splat->share;
     float grown = 1 + area * (1 + area * (0.5f + area * (1.0f / 6 + area * (1.0f / 24))));
     return 1 - 1 / grown;
 }
@@ -176,18 +179,18 @@ static void march_level(struct canvas *canvas, const struct march_view *picture,
         }
 }
 
-/* The two levels' transmittances multiply, so that the share of one in the exponent grows evenly.
- */
+/* The levels' transmittances multiply, so that the share of one in the exponent grows evenly. */
 void canvas_march(struct canvas *canvas, const struct march_view *picture,
                   const struct march_tree *tree, const struct march_seen *seen, float from_m,
                   float to_m)
 {
     const float next = (float)seen->next / 255;
-    struct march_part part = {from_m, to_m, seen->level, next};
+    const float kept = (1 - (float)seen->far / 255) * (1 - (float)seen->gone / 255);
+    struct march_part part = {from_m, to_m, seen->level, 1 - (1 - next) * kept};
     march_level(canvas, picture, tree, seen, &part);
     if (seen->next == 0)
         return;
     part.level++;
-    part.thinned = 1 - next;
+    part.thinned = 1 - next * kept;
     march_level(canvas, picture, tree, seen, &part);
 }

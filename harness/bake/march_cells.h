@@ -5,9 +5,8 @@
 #include "bake/cells.h"
 #include "bake/march_job.h"
 
-/* A cell spreads over so many pixels at most; the spheres of its trees have a radius of so many. */
+/* A cell spreads over so many pixels at most; its trees are MARCH_SMALL_PX at most. */
 #define MARCH_CELL_PX 2.5f
-#define MARCH_SMALL_PX 0.8f
 
 enum { MARCH_CELL = 254 }; /* a march_seen.level */
 

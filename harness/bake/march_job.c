@@ -35,6 +35,15 @@ void march_middle(const struct march_view *picture, const struct march_tree *tre
     middle[1] = 0.5f * (float)(view->height_px - 1) - scale * dot3(offset, view->up);
 }
 
+/* Of a far picture: all of it at a radius, nothing from smooth octaves above on. */
+static uint8_t far_share(float radius_px, float limit_px, float smooth)
+{
+    if (radius_px < limit_px || !(smooth > 0))
+        return radius_px < limit_px ? 255 : 0;
+    float part = 1 - log2f(radius_px / limit_px) / smooth;
+    return part > 0 ? (uint8_t)(255 * part) : 0;
+}
+
 static struct march_seen see_small(const struct march_view *picture, const struct march_tree *tree)
 {
     struct march_seen seen = {.level = MARCH_SPLAT};
@@ -66,21 +75,22 @@ static uint8_t next_share(float part, float smooth)
     return part > from ? (uint8_t)(255 * (part - from) / smooth) : 0;
 }
 
-struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
-                            float depth_m)
+/* Also the pixels that another one holds. */
+static void seen_join(struct march_seen *seen, const struct march_seen *other)
 {
-    static const float small_px = 0.8f;
+    for (int i = 0; i < 2; i++) {
+        bool none = seen->low[i] > seen->high[i];
+        seen->low[i] = none || other->low[i] < seen->low[i] ? other->low[i] : seen->low[i];
+        seen->high[i] = none || other->high[i] > seen->high[i] ? other->high[i] : seen->high[i];
+    }
+}
+
+static struct march_seen see_voxels(const struct march_view *picture, const struct march_tree *tree,
+                                    float depth_m)
+{
     const struct march_species *species = &picture->species[tree->species];
     const struct view *view = picture->view;
-    float radius_m = tree->scale * species->radius_m;
-    if (tree->stretch == 1 && depth_m - radius_m > view->near_m) {
-        float radius_px = radius_m * picture->focal_px / depth_m;
-        if (radius_px < small_px)
-            return see_small(picture, tree);
-        if (radius_px < picture->options.far_px)
-            return see_sprite(picture, tree, radius_m);
-    }
-    struct march_seen seen = {{0, 0}, {-1, -1}, 0, 0};
+    struct march_seen seen = {{0, 0}, {-1, -1}, 0, 0, 0, 0};
     float detail = march_detail_of(view, tree, species->voxels, picture->focal_px,
                                    picture->options.bias, depth_m);
     seen.level = (uint8_t)detail;
@@ -90,6 +100,32 @@ struct march_seen march_see(const struct march_view *picture, const struct march
     for (int i = 0; i < 2 && outline.any; i++)
         march_seen_between(&seen, i, ceilf(outline.low[i]), floorf(outline.high[i]),
                            i ? view->height_px : view->width_px);
+    return seen;
+}
+
+/* Sprites turn into splats below a splat's size, since that holds no more; else the finer turns
+ * into the coarser above its limit: rays between voxels smaller than a pixel would miss them. */
+struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
+                            float depth_m)
+{
+    const float radius_m = tree->scale * picture->species[tree->species].radius_m;
+    if (tree->stretch != 1 || depth_m - radius_m <= picture->view->near_m)
+        return see_voxels(picture, tree, depth_m);
+    const float smooth = picture->options.smooth, far_px = picture->options.far_px;
+    const float radius_px = radius_m * picture->focal_px / depth_m;
+    const bool sprites = far_px > MARCH_SMALL_PX;
+    const float small_px = sprites && smooth > 0 ? MARCH_SMALL_PX * exp2f(-smooth) : MARCH_SMALL_PX;
+    if (radius_px < small_px)
+        return see_small(picture, tree);
+    struct march_seen seen = radius_px < far_px ? see_sprite(picture, tree, radius_m)
+                                                : see_voxels(picture, tree, depth_m);
+    const bool far_sprite = sprites && seen.level != MARCH_SPRITE;
+    seen.far = far_share(radius_px, far_sprite ? far_px : small_px, smooth);
+    if (seen.far > 0) {
+        struct march_seen other =
+            far_sprite ? see_sprite(picture, tree, radius_m) : see_small(picture, tree);
+        seen_join(&seen, &other);
+    }
     return seen;
 }
 
@@ -338,6 +374,7 @@ void march_splat_place(const struct march_view *picture, const float middle[3],
     const float clear = march_clear(picture, middle);
     splat->x_px = splat_cut(middle[0], sides_px[0], &splat->columns, splat->across);
     splat->y_px = splat_cut(middle[1], sides_px[1], &splat->rows, splat->along);
+    splat->share = 1;
     splat->depth_m = middle[2];
     splat->lift_m = foot_y_m - picture->view->eye_m[1];
     for (int c = 0; c < 3; c++)

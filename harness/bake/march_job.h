@@ -30,6 +30,8 @@ struct march_view {
 };
 
 enum { MARCH_SPLAT = 255, MARCH_SPRITE = 253 };
+/* A tree's sphere of this radius is seen as a splat. */
+#define MARCH_SMALL_PX 0.8f
 
 /* Where a tree is on the screen: pixels whose centres its box may cover, at a level; low above
  * high: none. Smaller than a pixel: level MARCH_SPLAT, the four pixels around its middle; not much
@@ -38,6 +40,8 @@ struct march_seen {
     int16_t low[2], high[2];
     uint8_t level;
     uint8_t next; /* share of 255 that is drawn at the next coarser level */
+    uint8_t far;  /* share of 255 that is drawn from a far picture: of a sprite, as a splat */
+    uint8_t gone; /* share of 255 that a cell, or what is in this one, shows instead */
 };
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
                             float depth_m);
@@ -91,6 +95,7 @@ struct march_splat {
     float depth_m, lift_m;                       /* of its middle; of its foot above the eye */
     float rgb[3];
     float area_px2; /* what it hides altogether */
+    float share;    /* of its optical depth that is drawn */
     bool is_many;   /* trees, which may hide each other */
 };
 /* The share that fog leaves of what is at a march_middle. */

@@ -50,12 +50,14 @@ static void edge_sums(const struct march_sprite *sprite, const struct cut *acros
     }
 }
 
-/* Over what is seen through a pixel. color: radiance times cover, cover. */
-static void pixel_over(struct canvas *canvas, int x, int y, four color)
+/* Over what is seen through a pixel. color: radiance times cover, cover; of it, a share. */
+static void pixel_over(struct canvas *canvas, int x, int y, four color, float share)
 {
     struct march_rays *rays = &canvas->blocks[y / MARCH_BLOCK * canvas->across + x / MARCH_BLOCK];
     int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
     float left = rays->left[lane], scale = color[3] > 1 ? left / color[3] : left;
+    if (share < 1)
+        scale = left * canvas_part(color[3], share) / color[3];
     rays->left[lane] = left - scale * color[3];
     for (int c = 0; c < 3; c++)
         rays->rgb[c][lane] += scale * color[c];
@@ -80,7 +82,7 @@ static struct shine shine_of(const struct march_view *picture, float clear,
 
 void canvas_sprite(struct canvas *canvas, const struct march_view *picture,
                    const struct march_tree *tree, const struct march_sprite *sprite,
-                   const struct march_far *its, const struct march_far *far)
+                   const struct march_far *its, const struct march_far *far, float share)
 {
     const struct backdrop_tile *tile = &canvas->tile;
     float middle[3];
@@ -107,7 +109,7 @@ void canvas_sprite(struct canvas *canvas, const struct march_view *picture,
             if (texels[3] > 0 &&
                 !canvas_hides(&splat, &picture->rays, (float)(tile->x_px + x),
                               (float)(tile->y_px + y), canvas->depths_m[y * tile->stride + x]))
-                pixel_over(canvas, x, y, shine.own * texels + shine.fog * texels[3]);
+                pixel_over(canvas, x, y, shine.own * texels + shine.fog * texels[3], share);
         }
     }
 }
