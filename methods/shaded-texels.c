@@ -40,7 +40,7 @@ static const struct option table[] = {
     OPTION(struct options, interpolate, 0, 0, 1, "",
            "up to four times the slices, by interpolation, where the criterion asks for more"),
     OPTION(struct options, smooth, 0, 0, 1, "",
-           "numbers of slices and directions change gradually"),
+           "numbers of slices and directions change gradually, and trees become distant so"),
     OPTION(struct options, unit, 0, 0, 1, "",
            "normals get length 1 after filtering: nothing scatters within a texel any more"),
     OPTION_END,

@@ -48,7 +48,7 @@ static const struct option table[] = {
     OPTION(struct options, interpolate, 0, 0, 1, "",
            "up to four times the slices, by interpolation, where the criterion asks for more"),
     OPTION(struct options, smooth, 0, 0, 1, "",
-           "numbers of slices and directions change gradually"),
+           "numbers of slices and directions change gradually, and trees become distant so"),
     OPTION_END,
 };
 /* clang-format on */

@@ -150,6 +150,35 @@ static void test_distant__a_deep_forest_is_the_references(void **state)
                  tree_mean(drawn, 3) / tree_mean(truth, 3));
 }
 
+/* The picture's angle grows until all trees are distant: no step between two pictures is far above
+ * the mean one, where at once they jump. */
+static void test_distant__trees_become_distant_gradually_where_it_is_smooth(void **state)
+{
+    struct fixture *f = *state;
+    struct scene *scene = turned_trees(f, 3, 12);
+    enum { STEPS = 80 };
+    double worst[2] = {0, 0}, mean[2] = {0, 0};
+    for (int smooth = 0; smooth < 2; smooth++) {
+        struct studio studio;
+        struct frame *last = NULL;
+        studio_open(&studio, f->arena, f->method, smooth ? "smooth=on" : "smooth=off", LOD_AUTO,
+                    scene, lit);
+        for (int step = 0; step < STEPS; step++) {
+            struct view view =
+                tree_view(scene, 0.55f, 0.2f, 800, 44 * powf(1.6f, (float)step / STEPS));
+            struct frame *drawn = studio_draw(&studio, &view);
+            double change = last ? tree_rmse(last, drawn) : 0;
+            worst[smooth] = fmax(worst[smooth], change);
+            mean[smooth] += change / (STEPS - 1);
+            last = drawn;
+        }
+        studio_close(&studio);
+    }
+    if (worst[0] < 4 * mean[0] || worst[1] > 2.5 * mean[1])
+        fail_msg("worst and mean change: %g %g, smooth %g %g", worst[0], mean[0], worst[1],
+                 mean[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -157,6 +186,9 @@ int main(void)
         cmocka_unit_test(test_distant__cells_hold_every_tree_once_and_all_of_it),
         cmocka_unit_test(test_distant__terrain_in_front_hides_and_below_does_not),
         cmocka_unit_test(test_distant__a_deep_forest_is_the_references),
+        cmocka_unit_test_setup_teardown(
+            test_distant__trees_become_distant_gradually_where_it_is_smooth, open_fixture,
+            close_fixture),
     };
     return cmocka_run_group_tests_name("distant", tests, open_fixture, close_fixture);
 }

@@ -13,12 +13,14 @@ enum { TILE_PX = 4 * DISTANT_BLOCK };
 struct distant {
     const struct scene *scene;
     float limit_m;                /* largest tree's height over limit_px */
+    float octaves;                /* in which trees become distant */
     struct distant_plant *plants; /* species */
     struct distant_cells *cells;
     struct distant_light light;
     bool baked, lit;
     struct backdrop_cpu *backdrop;
     uint32_t *near; /* instances of cells that are not distant */
+    float *shares;  /* one an instance: that is drawn as distant; NULL: at once */
     size_t seen_count;
     struct distant_seen *seen; /* cells; front to back by order */
     float *keys[2];
@@ -42,6 +44,8 @@ static void cells_prepare(struct arena *arena, struct distant *distant, float li
     distant->cells = distant_cells_create(arena, scene, reach_m);
     size_t count = distant->cells->cells_count;
     distant->near = ARENA_ARRAY(arena, uint32_t, scene->instances_count);
+    if (distant->octaves > 0)
+        distant->shares = ARENA_ARRAY(arena, float, scene->instances_count);
     distant->seen = ARENA_ARRAY(arena, struct distant_seen, count);
     for (int i = 0; i < 2; i++) {
         distant->keys[i] = ARENA_ARRAY(arena, float, count);
@@ -58,7 +62,7 @@ static bool any_stretched(const struct scene *scene)
 }
 
 enum status distant_prepare(struct workspace *workspace, const struct scene *scene, float limit_px,
-                            struct distant **result)
+                            float octaves, struct distant **result)
 {
     struct arena *arena = workspace->arena;
     if (any_stretched(scene)) {
@@ -68,6 +72,7 @@ enum status distant_prepare(struct workspace *workspace, const struct scene *sce
     struct distant *distant = *result = ARENA_NEW(arena, struct distant);
     enum status status = backdrop_cpu_prepare(workspace, scene, &distant->backdrop);
     distant->scene = scene;
+    distant->octaves = octaves;
     distant->plants = ARENA_ARRAY(arena, struct distant_plant, scene->species_count);
     for (size_t i = 0; i < scene->species_count && status == STATUS_OK; i++)
         status = distant_plant_measure(workspace, scene->species[i].plant, &distant->plants[i]);
@@ -97,6 +102,30 @@ static void sphere_pixels(const struct view *view, const float away[3], float de
     }
 }
 
+/* The share of a cell that is distant: from a distance on, over some octaves. */
+static float share_at(const struct distant *distant, float nearest_m, float least_m)
+{
+    if (nearest_m < least_m || !(distant->octaves > 0))
+        return nearest_m < least_m ? 0 : 1;
+    return fminf(log2f(nearest_m / least_m) / distant->octaves, 1);
+}
+
+/* Its trees are drawn as they are near, too. */
+static void cell_near(struct distant *distant, const struct distant_cell *cell, float share,
+                      size_t *near)
+{
+    const uint32_t *instances = distant->cells->instances + cell->first;
+    memcpy(distant->near + *near, instances, cell->count * sizeof *distant->near);
+    *near += cell->count;
+    for (uint32_t k = 0; k < cell->count && distant->shares; k++)
+        distant->shares[instances[k]] = share;
+}
+
+float distant_share(const struct distant *distant, size_t instance)
+{
+    return distant->shares ? distant->shares[instance] : 0;
+}
+
 struct cull_list distant_cull(struct distant *distant, struct cull *cull, const struct view *view,
                               enum cull_order order)
 {
@@ -113,14 +142,14 @@ struct cull_list distant_cull(struct distant *distant, struct cull *cull, const 
             away[k] = cell->middle_m[k] - view->eye_m[k];
             depth += away[k] * view->forward[k];
         }
-        if (depth - cell->radius_m < least_m) {
-            memcpy(distant->near + near, cells->instances + cell->first,
-                   cell->count * sizeof *distant->near);
-            near += cell->count;
+        float share = share_at(distant, depth - cell->radius_m, least_m);
+        if (share < 1)
+            cell_near(distant, cell, share, &near);
+        if (!(share > 0))
             continue;
-        }
         struct distant_seen *seen = &distant->seen[distant->seen_count];
-        *seen = (struct distant_seen){.cell = (uint32_t)i, .nearest_m = depth - cell->radius_m};
+        *seen = (struct distant_seen){
+            .cell = (uint32_t)i, .nearest_m = depth - cell->radius_m, .share = share};
         sphere_pixels(view, away, depth, cell->radius_m, seen);
         distant->keys[0][distant->seen_count] = depth;
         distant->order[0][distant->seen_count] = (uint32_t)distant->seen_count;
@@ -257,8 +286,7 @@ static uint64_t strip_draw(const struct distant *distant, bool hides, int low_px
         int low = seen->low_px[0] > low_px ? seen->low_px[0] : low_px;
         int high = seen->high_px[0] < high_px ? seen->high_px[0] : high_px;
         if (low <= high && !cell_hidden(canvas, seen, low, high))
-            mixed += distant_cell_draw(canvas, distant->cells, distant->plants,
-                                       &distant->cells->cells[seen->cell], low, high);
+            mixed += distant_cell_draw(canvas, distant->cells, distant->plants, seen, low, high);
     }
     for (int y = 0; y < height; y++)
         for (int x = low_px; x <= high_px; x++)

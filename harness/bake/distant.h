@@ -14,15 +14,20 @@
 
 struct distant;
 
-/* limit_px: a tree is distant where the largest tree would be shorter than so many pixels. *distant
- * is NULL where trees are stretched: their pictures would be others. */
+/* limit_px: a tree is distant where the largest tree would be shorter than so many pixels; over so
+ * many octaves of distance from there on it becomes so gradually, 0: at once. *distant is NULL
+ * where trees are stretched: their pictures would be others. */
 enum status distant_prepare(struct workspace *workspace, const struct scene *scene, float limit_px,
-                            struct distant **distant);
+                            float octaves, struct distant **distant);
 
-/* Culls the scene: returns the trees in view that are not distant, sorted, and remembers the cells
- * of those that are. The list is the cull's, as cull_view's. */
+/* Culls the scene: returns the trees in view that are not distant, or not yet altogether, sorted,
+ * and remembers the cells of those that are. The list is the cull's, as cull_view's. */
 struct cull_list distant_cull(struct distant *distant, struct cull *cull, const struct view *view,
                               enum cull_order order);
+
+/* The share of an instance's optical depth that is drawn as distant, of distant_cull's view; 0..1.
+ */
+float distant_share(const struct distant *distant, size_t instance);
 
 /* Draws what distant_cull found into what is bound, on top of the backdrop; the pictures are baked
  * when it first found any. Leaves the blend function (1, 1 - alpha) and blending and depth test on,

@@ -1,5 +1,6 @@
 /* The trees of one cell into a picture, each its plant's picture seen from the cell's direction. */
 #include "bake/distant_parts.h"
+#include "bake/share.h"
 #include "bake/views.h"
 
 #include <math.h>
@@ -90,6 +91,7 @@ struct sprite {
     int low[2], high[2];        /* pixels that it may touch */
     float rgb_scale, alpha_scale, fog[3];
     float depth_m; /* of its nearest part */
+    float share;   /* of its optical depth */
 };
 
 /* The level whose texels are about as large as pixels, and how much larger than they are they must
@@ -200,10 +202,15 @@ static uint64_t sprite_row(const struct distant_canvas *canvas, const struct spr
             canvas->depths_m[row + (size_t)x] < sprite->depth_m)
             continue;
         sample(sprite, u, v, texel);
-        float alpha = texel[3] * sprite->alpha_scale, through = pixel[3];
+        float alpha = texel[3] * sprite->alpha_scale, through = pixel[3], gain = through;
+        float hides = alpha;
+        if (sprite->share < 1 && alpha > 0) {
+            hides = share_hides(alpha, sprite->share);
+            gain = through * hides / alpha;
+        }
         for (int c = 0; c < 3; c++)
-            pixel[c] += through * (texel[c] * sprite->rgb_scale + alpha * sprite->fog[c]);
-        pixel[3] = through * (1 - alpha);
+            pixel[c] += gain * (texel[c] * sprite->rgb_scale + alpha * sprite->fog[c]);
+        pixel[3] = through * (1 - hides);
         blocks[x / DISTANT_BLOCK].open -= pixel[3] < saturated;
         mixed++;
     }
@@ -211,15 +218,16 @@ static uint64_t sprite_row(const struct distant_canvas *canvas, const struct spr
 }
 
 uint64_t distant_cell_draw(const struct distant_canvas *canvas, const struct distant_cells *cells,
-                           const struct distant_plant *plants, const struct distant_cell *cell,
+                           const struct distant_plant *plants, const struct distant_seen *seen,
                            int low_px, int high_px)
 {
+    const struct distant_cell *cell = &cells->cells[seen->cell];
     struct facing facing;
     uint64_t mixed = 0;
     facing_fill(canvas->view, cell, &facing);
     for (uint32_t i = cell->first; i < cell->first + cell->count; i++) {
         const struct distant_tree *tree = &cells->trees[i];
-        struct sprite sprite;
+        struct sprite sprite = {.share = seen->share};
         if (!sprite_place(canvas, &facing, &plants[tree->species], tree, &sprite))
             continue;
         int low = sprite.low[0] > low_px ? sprite.low[0] : low_px;

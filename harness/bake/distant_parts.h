@@ -97,12 +97,13 @@ struct distant_seen {
     uint32_t cell;
     int low_px[2], high_px[2]; /* pixels that its sphere may touch, both ends included */
     float nearest_m;           /* along the view */
+    float share;               /* of its trees' optical depth that is drawn */
 };
 
 /* The part of a cell's trees within columns [low_px, high_px], under what is there. Returns how
  * many pixels are mixed from four texels each. */
 uint64_t distant_cell_draw(const struct distant_canvas *canvas, const struct distant_cells *cells,
-                           const struct distant_plant *plants, const struct distant_cell *cell,
+                           const struct distant_plant *plants, const struct distant_seen *seen,
                            int low_px, int high_px);
 
 #endif

@@ -1,6 +1,7 @@
 /* A tile of the march's picture while it is drawn. */
 #include "bake/march_canvas.h"
 #include "bake/march_shadow.h"
+#include "bake/share.h"
 
 #include <math.h>
 #include <string.h>
@@ -104,7 +105,7 @@ static float splat_share(const struct march_splat *splat, float area)
 {
     if (!splat->is_many) {
         float hides = area < 1 ? area : 1;
-        return splat->share < 1 ? canvas_part(hides, splat->share) : hides;
+        return splat->share < 1 ? share_hides(hides, splat->share) : hides;
     }
     area *= splat->share;
     float grown = 1 + area * (1 + area * (0.5f + area * (1.0f / 6 + area * (1.0f / 24))));

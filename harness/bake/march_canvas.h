@@ -4,8 +4,6 @@
 
 #include "bake/march_job.h"
 
-#include <math.h>
-
 enum { TILE_MAX = 64, TILE_BLOCKS_MAX = (TILE_MAX / MARCH_BLOCK) * (TILE_MAX / MARCH_BLOCK) };
 
 /* The first two are given. */
@@ -32,12 +30,6 @@ void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
 void canvas_sprite(struct canvas *canvas, const struct march_view *picture,
                    const struct march_tree *tree, const struct march_sprite *sprite,
                    const struct march_far *its, const struct march_far *far, float share);
-/* A share of what hides as much, 0..1, drawn so that this and the rest together hide as the whole.
- * What hides all has the depth of what hides 1 - 1/256, as stacks of slices have it. */
-static inline float canvas_part(float hides, float share)
-{
-    return 1 - powf(1 - (hides < 255.0f / 256 ? hides : 255.0f / 256), share);
-}
 /* Whether what is behind hides a splat from a pixel. */
 bool canvas_hides(const struct march_splat *splat, const struct backdrop_rays *picture_rays,
                   float x_px, float y_px, float behind_m);

@@ -1,6 +1,7 @@
 /* Trees of a few pixels on a tile: each pixel shows the mean of the far picture's texels that lie
  * in its square, whole or in part, from the sums at its corners. */
 #include "bake/march_canvas.h"
+#include "bake/share.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,7 +58,7 @@ static void pixel_over(struct canvas *canvas, int x, int y, four color, float sh
     int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
     float left = rays->left[lane], scale = color[3] > 1 ? left / color[3] : left;
     if (share < 1)
-        scale = left * canvas_part(color[3], share) / color[3];
+        scale = left * share_hides(color[3], share) / color[3];
     rays->left[lane] = left - scale * color[3];
     for (int c = 0; c < 3; c++)
         rays->rgb[c][lane] += scale * color[c];

@@ -56,7 +56,8 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
         status = nearby_prepare(workspace, scene, request->near_radii, &stack->nearby);
     if (status == STATUS_OK && request->distant_px > 0 && workspace->lod == LOD_AUTO &&
         request->ground == GROUND_UPRIGHT && !scene_is_stretched(scene))
-        status = distant_prepare(workspace, scene, request->distant_px, &stack->distant);
+        status = distant_prepare(workspace, scene, request->distant_px,
+                                 request->smooth ? 1.0f / STACK_BAND : 0, &stack->distant);
     if (status == STATUS_OK && request->groups > 0)
         status = stack_front_prepare(workspace, &stack->front);
     if (status != STATUS_OK)
@@ -132,9 +133,12 @@ static struct fill fill_behind(const struct stack *stack, const struct view *vie
 {
     struct stack_part parts[PARTS_MOST];
     int count = stack_parts(stack, view, lod, instance, parts);
+    const size_t number = (size_t)(instance - stack->scene->instances);
+    const float near = stack->distant ? 1 - distant_share(stack->distant, number) : 1;
     for (int k = 0; k < count; k++) {
         struct stack_tree *tree = &stack->trees[fill.parts + (size_t)k];
         stack_tree_fill(stack, view, instance, &parts[k], tree);
+        tree->power *= near;
         if (stack->bends)
             stack_bend_fill(stack, instance, tree, &stack->bends[fill.parts + (size_t)k]);
     }

@@ -45,7 +45,7 @@ struct stack_request {
     bool rough;             /* normals that scatter in a texel spread its light */
     bool facing;            /* leaves show the area that they turn to the eye */
     bool interpolate;       /* more slices than there are, between two each */
-    bool smooth;            /* no jump between numbers of slices and between stacks */
+    bool smooth;            /* no jump between numbers of slices, stacks and distant pictures */
     float criterion_px;     /* C2: parallax between two slices, px; 0: without it */
     float criterion_texels; /* C1: gap between two slices along them, texels; 0: without it */
     float texel_px;         /* mip level: texels are about this large on the picture */
