@@ -11,11 +11,12 @@
 
 #include "ray-texels-gl.glsl.h"
 
+#include <math.h>
 #include <string.h>
 
 struct options {
     int resolution, model;
-    float stop, step, bias;
+    float stop, step, bias, smooth;
 };
 
 /* clang-format off */
@@ -26,6 +27,9 @@ static const struct option table[] = {
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
     OPTION(struct options, step, 1.5, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
+    OPTION(struct options, smooth, 0, 0, 1, "levels",
+           "over which a level of detail turns into the next, both being drawn, and the last one into "
+           "a point; 0: at once"),
     OPTION_END,
 };
 /* clang-format on */
@@ -41,8 +45,16 @@ struct texels {
                         the screen, from pixel centres, px; its area, px^2 */
     float per_m;     /* voxels a metre; of a small tree: its depth along the view, m */
     float turn[2];   /* cosine, sine, both over the stretch */
-    float clear;     /* what fog leaves */
+    uint32_t shares; /* what fog leaves, and of the optical depth what is drawn: 16 bits each */
     uint32_t albedo; /* three times 10 bits */
+};
+
+/* Of a tree while one thing turns into another: two levels and a point. */
+enum { PIECES_MOST = 3 };
+struct piece {
+    uint32_t level;
+    bool small;  /* a point */
+    float share; /* of the tree's optical depth */
 };
 
 struct state {
@@ -107,7 +119,8 @@ static enum status prepare_buffers(struct workspace *workspace, struct state *st
                           [FIRSTS] = {GL_R32UI, 4},
                           [ENTRIES] = {GL_R32UI, 4}};
     const size_t sizes[BUFFERS] = {
-        [TREES] = state->scene->instances_count * sizeof(struct texels),
+        [TREES] = state->scene->instances_count * sizeof(struct texels) *
+                  (state->options.smooth > 0 ? PIECES_MOST : 1),
         [FIRSTS] = (TILES_MAX + 1) * sizeof(uint32_t),
         [ENTRIES] = state->tiles->capacity * sizeof(uint32_t),
     };
@@ -153,8 +166,9 @@ static enum status make_program(struct workspace *workspace, const struct state 
 {
     struct arena *scratch = arena_create(0);
     const char *defines =
-        arena_printf(scratch, "FIRST 256u\nPROBES 2\n%s%s%s",
+        arena_printf(scratch, "FIRST 256u\nPROBES 2\n%s%s%s%s",
                      scene_is_stretched(state->scene) ? "STRETCHED 1\n" : "",
+                     state->options.smooth > 0 ? "SMOOTH 1\n" : "",
                      state->options.model ? "ISOTROPIC 1\n" : "", counts ? "COUNT 1\n" : "");
     enum status status = gl_program(workspace->gl, "ray-texels-gl", ray_texels_gl_glsl, defines,
                                     program, workspace->error);
@@ -167,13 +181,13 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
 {
     struct gl *gl = workspace->gl;
     struct state *state = *result = ARENA_NEW(workspace->arena, struct state);
-    const size_t count = scene->instances_count;
     state->scene = scene;
     state->options = *(const struct options *)values;
+    const size_t count = scene->instances_count * (state->options.smooth > 0 ? PIECES_MOST : 1);
     state->tiles = tiles_create(workspace->arena, count);
     state->rects = ARENA_ARRAY(workspace->arena, struct tiles_rect, count);
     state->texels = ARENA_ARRAY(workspace->arena, struct texels, count);
-    state->trees = ARENA_ARRAY(workspace->arena, struct march_tree, count);
+    state->trees = ARENA_ARRAY(workspace->arena, struct march_tree, scene->instances_count);
     march_trees_fill(scene, state->trees);
     state->vertices = gl_vertex_array(gl);
     state->framebuffer = gl_framebuffer(gl);
@@ -235,32 +249,57 @@ static uint32_t pack_10(const uint32_t values[3])
     return values[0] | values[1] << 10 | values[2] << 20;
 }
 
-static void see(const struct state *state, const struct picture *picture, uint32_t number,
-                float depth_m, struct tiles_rect *rect, struct texels *texels)
+/* The share of the coarser of two, all of it at a size, nothing from smooth octaves above on. */
+static float coarser_share(float octaves, float smooth)
+{
+    if (octaves < 0 || !(smooth > 0))
+        return octaves < 0 ? 1 : 0;
+    return fmaxf(0, 1 - octaves / smooth);
+}
+
+/* What a tree is drawn as; returns how many pieces. */
+static int pieces_of(const struct state *state, const struct picture *picture, uint32_t number,
+                     float depth_m, struct piece pieces[PIECES_MOST])
 {
     static const float small_px = 0.75f;
     const struct view *view = picture->view;
     const struct march_tree *tree = &state->trees[number];
     const struct voxels *volume = state->volumes[tree->species];
-    uint32_t level =
-        march_level_of(view, tree, volume, picture->focal_px, state->options.bias, depth_m);
+    const float smooth = state->options.smooth;
+    const uint32_t last = volume->levels_count - 1;
+    float detail =
+        march_detail_of(view, tree, volume, picture->focal_px, state->options.bias, depth_m);
     struct march_box box = march_box_of(view, tree, volume, 0);
     struct march_outline outline = march_outline_of(view, &box, picture->focal_px);
-    bool small = outline.before && outline.high[0] - outline.low[0] < 2 * small_px &&
-                 outline.high[1] - outline.low[1] < 2 * small_px;
-    if (small)
-        level = volume->levels_count - 1;
-    const struct voxels_level *grid = &volume->levels[level];
+    float side_px = fmaxf(outline.high[0] - outline.low[0], outline.high[1] - outline.low[1]);
+    float small = outline.before ? coarser_share(log2f(side_px / (2 * small_px)), smooth) : 0;
+    uint32_t level = (uint32_t)detail;
+    float next = level < last ? coarser_share((float)(level + 1) - detail, smooth) : 0;
+    const struct piece all[PIECES_MOST] = {{level, false, (1 - next) * (1 - small)},
+                                           {level + 1, false, next * (1 - small)},
+                                           {last, true, small}};
+    int count = 0;
+    for (int k = 0; k < PIECES_MOST; k++)
+        if (all[k].share > 0)
+            pieces[count++] = all[k];
+    return count;
+}
+
+static void see(const struct state *state, const struct picture *picture, uint32_t number,
+                const struct piece *piece, struct tiles_rect *rect, struct texels *texels)
+{
+    const struct view *view = picture->view;
+    const struct march_tree *tree = &state->trees[number];
+    const struct voxels *volume = state->volumes[tree->species];
+    struct march_box box = march_box_of(view, tree, volume, piece->small ? 0 : piece->level);
+    struct march_outline outline = march_outline_of(view, &box, picture->focal_px);
+    const struct voxels_level *grid = &volume->levels[piece->level];
     const float voxel_m = tree->scale * grid->voxel_m;
-    if (small) {
+    if (piece->small) {
         place_small(picture, tree, &outline, &box, voxel_m, rect, texels);
     } else {
         texels->per_m = 1 / voxel_m;
-        march_eye_of(view, tree, volume, level, texels->per_m, texels->where);
-        if (level > 0) {
-            box = march_box_of(view, tree, volume, level);
-            outline = march_outline_of(view, &box, picture->focal_px);
-        }
+        march_eye_of(view, tree, volume, piece->level, texels->per_m, texels->where);
         const int size_px[2] = {view->width_px, view->height_px};
         for (int i = 0; i < 2; i++)
             rect_between(rect, i, ceilf(outline.low[i]), floorf(outline.high[i]),
@@ -273,11 +312,13 @@ static void see(const struct state *state, const struct picture *picture, uint32
         texels->low[i] = (uint16_t)rect->low[i];
         texels->high[i] = (uint16_t)rect->high[i];
     }
-    texels->first_cell = state->first_cells[tree->species][level];
-    texels->size = pack_10(grid->size) | (uint32_t)small << 30;
+    texels->first_cell = state->first_cells[tree->species][piece->level];
+    texels->size = pack_10(grid->size) | (uint32_t)piece->small << 30;
     texels->turn[0] = tree->cosine / tree->stretch;
     texels->turn[1] = tree->sine / tree->stretch;
-    texels->clear = march_box_clear(&box, picture->fog_density);
+    float clear = march_box_clear(&box, picture->fog_density);
+    texels->shares = (uint32_t)(65535 * clear + 0.5f) | (uint32_t)(65535 * piece->share + 0.5f)
+                                                            << 16;
     texels->albedo = pack_10(albedo);
 }
 
@@ -292,16 +333,21 @@ static bool upload_trees(struct workspace *workspace, struct state *state, const
     };
     struct cull_list list = cull_view(state->cull, view, CULL_FRONT_TO_BACK);
     struct tiles *tiles = state->tiles;
-    for (size_t i = 0; i < list.count; i++)
-        see(state, &picture, list.instances[i], list.depths_m[i], &state->rects[i],
-            &state->texels[i]);
-    tiles_bin(tiles, view->width_px, view->height_px, state->rects, list.count);
+    size_t count = 0;
+    for (size_t i = 0; i < list.count; i++) {
+        struct piece pieces[PIECES_MOST];
+        int pieces_count = pieces_of(state, &picture, list.instances[i], list.depths_m[i], pieces);
+        for (int k = 0; k < pieces_count; k++, count++)
+            see(state, &picture, list.instances[i], &pieces[k], &state->rects[count],
+                &state->texels[count]);
+    }
+    tiles_bin(tiles, view->width_px, view->height_px, state->rects, count);
     size_t tiles_count = (size_t)(tiles->columns * tiles->rows);
     size_t entries_count = tiles->first[tiles_count];
     if (entries_count == 0)
         return false;
-    gl->NamedBufferSubData(state->buffers[TREES], 0,
-                           (GLsizeiptr)(list.count * sizeof *state->texels), state->texels);
+    gl->NamedBufferSubData(state->buffers[TREES], 0, (GLsizeiptr)(count * sizeof *state->texels),
+                           state->texels);
     gl->NamedBufferSubData(state->buffers[FIRSTS], 0,
                            (GLsizeiptr)((tiles_count + 1) * sizeof(uint32_t)), tiles->first);
     gl->NamedBufferSubData(state->buffers[ENTRIES], 0,

@@ -130,7 +130,12 @@ void main()
         vec4 where = uintBitsToFloat(texelFetch(trees, tree + 1));
         uvec4 looks = texelFetch(trees, tree + 2);
         vec2 turn = uintBitsToFloat(looks.xy);
-        float clear = uintBitsToFloat(looks.z);
+        float clear = float(looks.z & 65535u) / 65535.0;
+#ifdef SMOOTH
+        float drawn = float(looks.z >> 16) / 65535.0;  // of the tree's optical depth
+#else
+        const float drawn = 1.0;
+#endif
         float rise = 1.0, speed = stretch;  // 1 / the tree's stretch; in the plant, per metre along the view
 #ifdef STRETCHED
         rise = length(turn);
@@ -188,7 +193,7 @@ void main()
                     along = max(along + limits.z, middle + (float(cell) - 1.0) * leap);
             }
             bool empty = cell < FIRST;
-            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)), empty ? 0.0 : pace, f_eye,
+            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)), empty ? 0.0 : drawn * pace, f_eye,
                                     f_sun, f_both, rise * rise - 1.0);
 #ifdef COUNT
             lookups += empty || pace == 0.0 ? 0u : 2u;

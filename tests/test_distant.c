@@ -186,9 +186,7 @@ int main(void)
         cmocka_unit_test(test_distant__cells_hold_every_tree_once_and_all_of_it),
         cmocka_unit_test(test_distant__terrain_in_front_hides_and_below_does_not),
         cmocka_unit_test(test_distant__a_deep_forest_is_the_references),
-        cmocka_unit_test_setup_teardown(
-            test_distant__trees_become_distant_gradually_where_it_is_smooth, open_fixture,
-            close_fixture),
+        cmocka_unit_test(test_distant__trees_become_distant_gradually_where_it_is_smooth),
     };
     return cmocka_run_group_tests_name("distant", tests, open_fixture, close_fixture);
 }

@@ -188,6 +188,37 @@ static void test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws(void **sta
     }
 }
 
+/* The level that a pixel asks for grows by one in equal parts, of a still tree: at once all of it
+ * changes in one step. */
+static void test_ray_texels_gl__a_level_turns_into_the_next_without_a_jump(void **state)
+{
+    (void)state;
+    enum { STEPS = 12 };
+    struct arena *arena = arena_create(0);
+    struct plant *plant = plant_from_mesh(arena, "lopsided", tree_mesh(arena, 400));
+    struct scene *scene = tree_scene(arena, plant, 1, 0);
+    struct view view = tree_view(scene, 0.55f, 0.2f, 300, 14);
+    double greatest[3] = {0, 0, 0}, whole = 0;
+    for (int k = 0; k < 3; k++) {
+        struct frame *first = NULL, *last = NULL;
+        for (int step = 0; step < STEPS; step++) {
+            char options[64];
+            snprintf(options, sizeof options, "resolution=64,bias=%g,smooth=%g",
+                     0.55 + 1.1 * step / (STEPS - 1), 0.5 * k);
+            struct frame *frame =
+                tree_draw(arena, tree_method("ray-texels-gl"), options, scene, lit, &view, NULL);
+            greatest[k] = last ? fmax(greatest[k], tree_rmse(last, frame)) : 0;
+            last = frame;
+            first = first ? first : frame;
+        }
+        whole = k == 0 ? tree_rmse(first, last) : whole;
+    }
+    if (!(greatest[0] > 0.8 * whole && greatest[1] < 0.4 * whole && greatest[2] < 0.25 * whole))
+        fail_msg("greatest change: %g, %g and %g of %g", greatest[0], greatest[1], greatest[2],
+                 whole);
+    arena_destroy(arena);
+}
+
 static void test_tiles__hold_what_touches_them_in_order(void **state)
 {
     (void)state;
@@ -247,6 +278,7 @@ int main(void)
         cmocka_unit_test(test_ray_texels_gl__a_tree_in_another_hides_what_is_left),
         cmocka_unit_test(test_ray_texels_gl__leaves_that_lie_alike_are_lit_as_one),
         cmocka_unit_test(test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws),
+        cmocka_unit_test(test_ray_texels_gl__a_level_turns_into_the_next_without_a_jump),
         cmocka_unit_test(test_tiles__hold_what_touches_them_in_order),
         cmocka_unit_test(test_tiles__grow_until_all_fits),
     };

@@ -50,12 +50,6 @@ float march_detail_of(const struct view *view, const struct march_tree *tree,
     return fminf(fmaxf(level, 0), (float)(voxels->levels_count - 1));
 }
 
-uint32_t march_level_of(const struct view *view, const struct march_tree *tree,
-                        const struct voxels *voxels, float focal_px, float bias, float depth_m)
-{
-    return (uint32_t)march_detail_of(view, tree, voxels, focal_px, bias, depth_m);
-}
-
 static float dot3(const float a[3], const float b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -28,9 +28,6 @@ void march_eye_of(const struct view *view, const struct march_tree *tree,
 /* The level whose voxels are as large as pixels, were there one for every size. */
 float march_detail_of(const struct view *view, const struct march_tree *tree,
                       const struct voxels *voxels, float focal_px, float bias, float depth_m);
-/* The finer one of those beside it. */
-uint32_t march_level_of(const struct view *view, const struct march_tree *tree,
-                        const struct voxels *voxels, float focal_px, float bias, float depth_m);
 
 /* The middle of a level's box from the eye, and its half extents' vectors. */
 struct march_box {
