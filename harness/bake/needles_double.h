@@ -58,6 +58,7 @@
 #define needles_twig needles_twig_double
 #define needles_twig_depths needles_twig_depths_double
 #define needles_twig_of needles_twig_of_double
+#define needles_twig_opacity needles_twig_opacity_double
 #define needles_twig_shade needles_twig_shade_double
 
 #include "bake/needles_needle.h"
@@ -118,6 +119,7 @@
 #undef needles_twig
 #undef needles_twig_depths
 #undef needles_twig_of
+#undef needles_twig_opacity
 #undef needles_twig_shade
 
 #endif

@@ -96,6 +96,21 @@ static inline struct needles_lit needles_disc_lit(const struct needles_disc *dis
     return lit;
 }
 
+/* Share of the twig's width that its needles cover. regular: cones that are all turned alike cover
+ * as an even disc does (a_I), and no more than each of them alone; else, at random azimuths and
+ * places, as the density of needles is, which falls from the axis (a_rho). depths: of the eye. */
+static inline real needles_twig_opacity(const struct needles_twig *twig, const real eye[3],
+                                        const real depths[2], bool regular)
+{
+    if (!regular)
+        return real_min(needles_radial_opacity(depths[0] + depths[1]), 1);
+    const real even = real_min(needles_disc_opacity(depths[0] + depths[1]), 1);
+    const real flat = real_sqrt(eye[0] * eye[0] + eye[1] * eye[1]);
+    const real width = 2 * twig->reach_m * twig->spacing_m * real_max(flat, REAL(1e-4));
+    const real alone = twig->length_m * twig->length_m * needles_cone_cover(twig, eye).regular;
+    return alone > 0 ? real_min(even, alone / width) : even;
+}
+
 /* What a pixel gets of a twig wherever it covers it: a mean over the twig's width 2 R. Reflectances
  * are those of the needles that are seen, with their shadows. halves: nearer to the eye, farther;
  * in the order that the eye meets them, so that what the second one covers is behind the first:
@@ -112,8 +127,7 @@ needles_twig_shade(const struct needles_twig *twig, const struct needles_sight *
     const struct needles_sums sums = needles_cone_sums(twig->sine, twig->cosine, sight);
     const struct needles_disc disc = needles_disc_of(twig, sight);
     const struct needles_lit lit = needles_disc_lit(&disc);
-    const real depth = disc.eye[0] + disc.eye[1];
-    const real opacity = regular ? needles_disc_opacity(depth) : needles_radial_opacity(depth);
+    const real opacity = needles_twig_opacity(twig, sight->eye, disc.eye, regular);
     const real seen = real_max(lit.seen[0] + lit.seen[1], REAL(1e-30));
     struct needles_twig_shade shade = {{{0, 0, 0}, {0, 0, 0}}, {0, 0, 0}};
     shade.all.opacity = real_min(opacity, 1);
