@@ -186,6 +186,73 @@ static void test_jakulin__every_ray_meets_crossing_slices_once_and_from_far_to_n
     assert_true(met > 300);
 }
 
+/* ---- The same in pictures. ---- */
+
+/* A crown 6 m wide, 4 m high, 3 m deep along (1, 0, 1), halfway between two directions of two:
+ * small leaves spread evenly, in front red, behind green. */
+static struct plant *two_halves(struct arena *arena)
+{
+    enum { LEAVES = 5000 };
+    struct mesh *mesh = tree_mesh(arena, LEAVES);
+    struct random random = random_seed(11, 1);
+    for (uint32_t k = mesh->parts[1].first_triangle; k < mesh->triangles_count; k++) {
+        float across = 6 * random_float(&random) - 3, deep = 3 * random_float(&random) - 1.5f;
+        float middle[3] = {(deep + across) * (float)M_SQRT1_2, 2 + 4 * random_float(&random),
+                           (deep - across) * (float)M_SQRT1_2};
+        for (int corner = 0; corner < 3; corner++) {
+            uint32_t vertex = mesh->triangles[k][corner];
+            for (int i = 0; i < 3; i++)
+                mesh->positions[vertex][i] = middle[i] + 0.4f * (random_float(&random) - 0.5f);
+            mesh->colors[vertex][0] = deep > 0;
+            mesh->colors[vertex][1] = deep <= 0;
+            mesh->colors[vertex][2] = 0;
+        }
+    }
+    mesh->materials[1].albedo[0] = mesh->materials[1].albedo[1] = 0.5f;
+    mesh_bounds(mesh);
+    return plant_from_mesh(arena, "two halves", mesh);
+}
+
+/* Of what the middle of the crown shows, the share of its back; and what is seen through it. */
+static double share_of_back(struct fixture *f, const char *options, double *through)
+{
+    struct scene *scene = tree_scene(f->arena, two_halves(f->arena), 1, 1);
+    for (int c = 0; c < 3; c++)
+        scene->sun.radiance[c] = 0;
+    struct view view = tree_view(scene, (float)M_PI_4, 0, 300, 9);
+    struct frame *frame = tree_draw(f->arena, f->method, options, scene, lit, &view, NULL);
+    double sums[4] = {0, 0, 0, 0};
+    for (int y = 38; y < 58; y++)
+        for (int x = 26; x < 70; x++)
+            for (int c = 0; c < 4; c++)
+                if (x < 44 || x > 51) /* the trunk is no leaf */
+                    sums[c] += frame->rgba[4 * (y * TREE_WIDTH + x) + c] / (20 * 36);
+    *through = 1 - sums[3];
+    sums[0] /= scene->ambient[0];
+    sums[1] /= scene->ambient[1];
+    return sums[1] / (sums[0] + sums[1]);
+}
+
+/* Of a crown that lets T through, each half of it the root: of the back T^1/2 (1 - T^1/2) is seen
+ * past the front. One stack drawn over the other, of half its depth each, and of that half a
+ * half before the other: with t = T^1/4 it is t (1 - t) (1 + t^2). */
+static void test_jakulin__only_in_exact_order_the_front_hides_the_back(void **state)
+{
+    struct fixture *f = *state;
+    for (int exact = 0; exact < 2; exact++) {
+        double through,
+            shown = share_of_back(f,
+                                  exact ? "directions=2,slices=16,resolution=8,order=exact"
+                                        : "directions=2,slices=16,resolution=8,order=mixed",
+                                  &through);
+        double t = pow(through, 0.25);
+        double wanted = (exact ? t * t * (1 - t * t) : t * (1 - t) * (1 + t * t)) / (1 - through);
+        if (fabs(shown / wanted - 1) > 0.15 || through > 0.1)
+            fail_msg("exact %d: %.3f of what is seen is the back, not %.3f; %.3f is seen through",
+                     exact, shown, wanted, through);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -194,6 +261,7 @@ int main(void)
         cmocka_unit_test(test_jakulin__a_plant_of_bark_alone_is_drawn_as_polygons_draw_it),
         cmocka_unit_test(test_jakulin__turning_around_a_crown_never_jumps),
         cmocka_unit_test(test_jakulin__every_ray_meets_crossing_slices_once_and_from_far_to_near),
+        cmocka_unit_test(test_jakulin__only_in_exact_order_the_front_hides_the_back),
     };
     return cmocka_run_group_tests_name("jakulin", tests, open_fixture, close_fixture);
 }
