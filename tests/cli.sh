@@ -163,6 +163,12 @@ for verb in 'calibrate' 'run --scene tiny --method null' 'render --scene tiny --
   refuses "$verb: a back end that is none" 65 "'foo' is not one of" $verb --backend foo
 done
 refuses 'a target that is none' 64 "--target: 'rgb' is not one of" calibrate --target rgb
+try shaders -q -o "$work/shaders"
+is 'shaders draws its maps' $rc -eq 0 -a -s "$work/shaders/shaders.png" -a -s "$work/shaders/shaders.gp"
+is 'the exact forms of shaders err by a hundredth, those of the paper by most of it' "$(awk '
+  /^[0-9]/ {n++; exact += ($6 > $4 ? $6 - $4 : $4 - $6); paper += ($8 > $4 ? $8 - $4 : $4 - $8); all += $4}
+  END {print (n == 2709 && exact < 0.01 * all && paper > 0.5 * all)}' "$work/shaders/shaders.dat")" = 1
+refuses 'an argument that shaders does not have' 64 "'x' is too much" shaders x
 
 # 4. Cells that fail are results.
 try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q

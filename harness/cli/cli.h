@@ -25,6 +25,7 @@ int verb_reference(int argc, char **argv);
 int verb_views(int argc, char **argv);
 int verb_diff(int argc, char **argv);
 int verb_report(int argc, char **argv);
+int verb_shaders(int argc, char **argv);
 int verb_calibrate(int argc, char **argv);
 int verb_conform(int argc, char **argv);
 int verb_cache(int argc, char **argv);

@@ -9,6 +9,7 @@ const struct verb verbs[] = {
     {"reference", "ray trace one view to an EXR or PNG file", verb_reference},
     {"views", "ray trace pictures with depth around a plant", verb_views},
     {"diff", "compare two pictures by every metric", verb_diff},
+    {"shaders", "map the errors of the shaders of needles", verb_shaders},
     {"calibrate", "measure what this machine can do at most", verb_calibrate},
     {"conform", "check that methods and plugins keep the contract", verb_conform},
     {"cache", "show, trim or clear the cache of built things", verb_cache},
