@@ -1,6 +1,6 @@
 /* Golden values of the shaders of needles: mpmath and converged quadrature of the definitions, as
- * the sheet of corrected formulas of paper 002 gives them (its section 10, G1 to G8; angles in degrees,
- * vectors before they are made unit). */
+ * the sheet of corrected formulas of paper 002 gives them (its section 10, G1 to G8; angles in
+ * degrees, vectors before they are made unit). */
 #ifndef TREELINE_TESTS_NEEDLES_GOLDEN_H
 #define TREELINE_TESTS_NEEDLES_GOLDEN_H
 

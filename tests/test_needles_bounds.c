@@ -3,6 +3,7 @@
  * in double. */
 #include "testing.h"
 
+#include "bake/needles.h"
 #include "bake/needles_double.h"
 #include "base/random.h"
 

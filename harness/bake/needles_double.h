@@ -2,7 +2,7 @@
 #ifndef TREELINE_BAKE_NEEDLES_DOUBLE_H
 #define TREELINE_BAKE_NEEDLES_DOUBLE_H
 
-#include "bake/needles.h"
+#include "bake/needles_math.h"
 
 #undef TREELINE_BAKE_NEEDLES_NEEDLE_H
 #undef TREELINE_BAKE_NEEDLES_OPACITY_H
@@ -121,5 +121,12 @@
 #undef needles_twig_of
 #undef needles_twig_opacity
 #undef needles_twig_shade
+
+/* needles.h may come before or after. */
+#undef TREELINE_BAKE_NEEDLES_NEEDLE_H
+#undef TREELINE_BAKE_NEEDLES_OPACITY_H
+#undef TREELINE_BAKE_NEEDLES_CONE_H
+#undef TREELINE_BAKE_NEEDLES_TWIG_H
+#undef TREELINE_BAKE_NEEDLES_PAPER_H
 
 #endif
