@@ -13,9 +13,9 @@
 #define REFERENCE_SAMPLES_LIMIT 65536
 #define REFERENCE_SIDE_LIMIT 16384
 
-/* How one part of a mesh is shaded. */
+/* How one part of a mesh, or the bark or the needles of a conifer, is shaded. */
 struct surface {
-    const struct mesh *mesh;
+    const struct mesh *mesh; /* NULL: of a conifer, flat and not varied */
     uint32_t first_triangle;
     bool leaf;
     bool plant;  /* counts as coverage */

@@ -1,5 +1,6 @@
 /* The reference's scene: plants, terrain and instances as Embree has them, and how their parts are
  * shaded. */
+#include "plant/conifer.h"
 #include "plant/texture.h"
 #include "truth/reference_parts.h"
 
@@ -101,6 +102,49 @@ static enum status add_mesh(struct arena *arena, struct traced_scene *traced,
     return embree_add_mesh(traced->embree, &traced_mesh, error);
 }
 
+/* A conifer is not traced as polygons: its branches and needles are round, solid, lit on the
+ * outside alone. First the bark, then the needles, where there are any. */
+static size_t conifer_surfaces(const struct conifer *conifer)
+{
+    return conifer->needles_count ? 2 : 1;
+}
+
+static struct embree_cones cones_of(struct arena *arena, const struct conifer_piece *pieces,
+                                    size_t count)
+{
+    float(*ends)[2][4] = arena_alloc(arena, count, sizeof *ends);
+    for (size_t i = 0; i < count; i++) {
+        memcpy(ends[i][0], pieces[i].a_m, sizeof pieces[i].a_m);
+        memcpy(ends[i][1], pieces[i].b_m, sizeof pieces[i].b_m);
+        ends[i][0][3] = pieces[i].radius_a_m;
+        ends[i][1][3] = pieces[i].radius_b_m;
+    }
+    return (struct embree_cones){ends[0][0], count};
+}
+
+static enum status add_conifer(struct traced_scene *traced, const struct conifer *conifer,
+                               struct surface *surfaces, struct error *error)
+{
+    struct arena *scratch = arena_create(0);
+    size_t bark = conifer->branches_count + conifer->twigs_count;
+    struct conifer_piece *pieces = ARENA_ARRAY(scratch, struct conifer_piece, bark);
+    conifer_bark(conifer, pieces);
+    struct embree_cones sets[2] = {cones_of(scratch, pieces, bark)};
+    const float *albedos[2] = {conifer->bark_albedo, conifer->needle_albedo};
+    if (conifer->needles_count) {
+        pieces = ARENA_ARRAY(scratch, struct conifer_piece, conifer->needles_count);
+        conifer_needles(conifer, pieces);
+        sets[1] = cones_of(scratch, pieces, conifer->needles_count);
+    }
+    for (size_t k = 0; k < conifer_surfaces(conifer); k++) {
+        surfaces[k] = (struct surface){.plant = true, .flat = true};
+        memcpy(surfaces[k].albedo, albedos[k], sizeof surfaces[k].albedo);
+    }
+    enum status status = embree_add_cones(traced->embree, sets, conifer_surfaces(conifer), error);
+    arena_destroy(scratch);
+    return status;
+}
+
 static void add_instance(struct traced_scene *traced, size_t number, mat4 matrix, uint32_t mesh,
                          const struct placement *placement)
 {
@@ -112,9 +156,10 @@ static void add_instance(struct traced_scene *traced, size_t number, mat4 matrix
     traced->placements[number] = *placement;
 }
 
-/* A mesh that is traced: its number in Embree and its surfaces. */
+/* A mesh or a conifer that is traced: its number in Embree and its surfaces. */
 struct traced_mesh {
-    const struct mesh *mesh; /* NULL: not in the scene */
+    const struct mesh *mesh;       /* NULL: not in the scene, or a conifer */
+    const struct conifer *conifer; /* NULL: not in the scene, or a mesh */
     uint32_t number, first_surface;
 };
 
@@ -127,10 +172,12 @@ static enum status find_meshes(struct arena *arena, const struct scene *scene,
         if (species >= scene->species_count)
             return error_set(error, STATUS_INVALID, "instance %zu: species %u is outside 0..%zu", i,
                              species, scene->species_count - 1);
-        if (meshes[species].mesh)
+        if (meshes[species].mesh || meshes[species].conifer)
             continue;
-        enum status status =
-            plant_mesh(scene->species[species].plant, &meshes[species].mesh, error);
+        struct plant *plant = scene->species[species].plant;
+        enum status status = plant_conifer(plant, &meshes[species].conifer, error);
+        if (!status && !meshes[species].conifer)
+            status = plant_mesh(plant, &meshes[species].mesh, error);
         if (status)
             return status;
     }
@@ -139,26 +186,35 @@ static enum status find_meshes(struct arena *arena, const struct scene *scene,
     return STATUS_OK;
 }
 
+static size_t surfaces_of(const struct traced_mesh *traced)
+{
+    return traced->conifer ? conifer_surfaces(traced->conifer)
+           : traced->mesh  ? traced->mesh->parts_count
+                           : 0;
+}
+
 static enum status add_meshes(struct arena *arena, const struct scene *scene,
                               struct traced_mesh *meshes, struct traced_scene *traced,
                               struct error *error)
 {
     size_t surfaces_count = 0;
     for (size_t i = 0; i <= scene->species_count; i++)
-        surfaces_count += meshes[i].mesh ? meshes[i].mesh->parts_count : 0;
+        surfaces_count += surfaces_of(&meshes[i]);
     traced->surfaces = ARENA_ARRAY(arena, struct surface, surfaces_count);
     uint32_t number = 0, first_surface = 0;
     for (size_t i = 0; i <= scene->species_count; i++) {
-        if (!meshes[i].mesh)
+        if (!surfaces_of(&meshes[i]))
             continue;
+        struct surface *surfaces = traced->surfaces + first_surface;
         meshes[i].number = number++;
         meshes[i].first_surface = first_surface;
-        enum status status =
-            add_mesh(arena, traced, meshes[i].mesh, traced->surfaces + first_surface,
-                     i < scene->species_count, error);
+        enum status status = meshes[i].conifer
+                                 ? add_conifer(traced, meshes[i].conifer, surfaces, error)
+                                 : add_mesh(arena, traced, meshes[i].mesh, surfaces,
+                                            i < scene->species_count, error);
         if (status)
             return status;
-        first_surface += (uint32_t)meshes[i].mesh->parts_count;
+        first_surface += (uint32_t)surfaces_of(&meshes[i]);
     }
     return STATUS_OK;
 }

@@ -137,6 +137,46 @@ static void add_part(struct embree *embree, RTCScene scene, const struct embree_
     rtcReleaseGeometry(geometry);
 }
 
+static struct mesh_scene *scene_begin(struct embree *embree)
+{
+    struct mesh_scene *made = ARENA_NEW(embree->arena, struct mesh_scene);
+    made->scene = rtcNewScene(embree->device);
+    rtcSetSceneFlags(made->scene, RTC_SCENE_FLAG_ROBUST);
+    return made;
+}
+
+static enum status scene_end(struct embree *embree, struct mesh_scene *made, struct error *error)
+{
+    rtcCommitScene(made->scene);
+    made->next = embree->meshes;
+    embree->meshes = made;
+    embree->meshes_count++;
+    return device_status(embree, "building a mesh", error);
+}
+
+enum status embree_add_cones(struct embree *embree, const struct embree_cones *sets,
+                             size_t sets_count, struct error *error)
+{
+    struct mesh_scene *made = scene_begin(embree);
+    for (size_t i = 0; i < sets_count; i++) {
+        size_t count = sets[i].cones_count;
+        RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE);
+        float *ends = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                              RTC_FORMAT_FLOAT4, 4 * sizeof(float), 2 * count);
+        uint32_t *first = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                                  RTC_FORMAT_UINT, sizeof(uint32_t), count);
+        if (ends && first) {
+            memcpy(ends, sets[i].ends, 8 * count * sizeof *ends);
+            for (size_t k = 0; k < count; k++)
+                first[k] = (uint32_t)(2 * k);
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(made->scene, geometry, (unsigned)i);
+        rtcReleaseGeometry(geometry);
+    }
+    return scene_end(embree, made, error);
+}
+
 enum status embree_add_mesh(struct embree *embree, const struct embree_mesh *mesh,
                             struct error *error)
 {
@@ -145,19 +185,13 @@ enum status embree_add_mesh(struct embree *embree, const struct embree_mesh *mes
     RTCBuffer positions = rtcNewBuffer(embree->device, bytes + 16);
     if (positions && bytes)
         memcpy(rtcGetBufferData(positions), mesh->positions, bytes);
-    struct mesh_scene *made = ARENA_NEW(embree->arena, struct mesh_scene);
-    made->scene = rtcNewScene(embree->device);
-    rtcSetSceneFlags(made->scene, RTC_SCENE_FLAG_ROBUST);
+    struct mesh_scene *made = scene_begin(embree);
     for (size_t i = 0; i < mesh->parts_count; i++)
         if (mesh->parts[i].triangles_count)
             add_part(embree, made->scene, mesh, &mesh->parts[i], positions);
     if (positions)
         rtcReleaseBuffer(positions);
-    rtcCommitScene(made->scene);
-    made->next = embree->meshes;
-    embree->meshes = made;
-    embree->meshes_count++;
-    return device_status(embree, "building a mesh", error);
+    return scene_end(embree, made, error);
 }
 
 void embree_add_instance(struct embree *embree, uint32_t mesh, const float to_world[12])

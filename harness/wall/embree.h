@@ -23,10 +23,10 @@ struct embree_packet {
     float time[EMBREE_LANES];
     float far[EMBREE_LANES];
     uint32_t mask[EMBREE_LANES], id[EMBREE_LANES], flags[EMBREE_LANES];
-    float normal[3][EMBREE_LANES];          /* of the triangle, in the mesh's space, not unit */
+    float normal[3][EMBREE_LANES];          /* of the surface, in the mesh's space, not unit */
     float u[EMBREE_LANES], v[EMBREE_LANES]; /* weights of the second and third vertex */
-    uint32_t primitive[EMBREE_LANES];       /* triangle of the part, from 0 */
-    uint32_t geometry[EMBREE_LANES];        /* part of the mesh, from 0 */
+    uint32_t primitive[EMBREE_LANES];       /* triangle or cone of the part, from 0 */
+    uint32_t geometry[EMBREE_LANES];        /* part of the mesh or set of cones, from 0 */
     uint32_t instance[EMBREE_LANES];        /* in the order of embree_add_instance */
     uint32_t reserved[EMBREE_LANES];
 };
@@ -60,6 +60,14 @@ void embree_destroy(struct embree *embree); /* NULL is allowed */
 /* Builds a mesh; its number is the count of meshes before. */
 enum status embree_add_mesh(struct embree *embree, const struct embree_mesh *mesh,
                             struct error *error);
+/* Frusta of cones with flat ends: round curves, whose normals are exact everywhere. */
+struct embree_cones {
+    const float *ends; /* cones_count x 2 x 4: x, y, z, radius */
+    size_t cones_count;
+};
+/* Builds sets of cones, numbered as a mesh is: each is a part. */
+enum status embree_add_cones(struct embree *embree, const struct embree_cones *sets,
+                             size_t sets_count, struct error *error);
 /* to_world: 3 x 4, column-major. Errors are told by embree_commit. */
 void embree_add_instance(struct embree *embree, uint32_t mesh, const float to_world[12]);
 enum status embree_commit(struct embree *embree, struct error *error);
