@@ -1,5 +1,6 @@
 /* scene.json: plants, placement, terrain. */
 #include "scene/describe.h"
+#include "scene/relief.h"
 
 #include <string.h>
 
@@ -157,6 +158,18 @@ void describe_placement(struct arena *arena, struct json *root, struct descripti
     }
 }
 
+static void describe_relief(struct json *terrain, struct ground *ground)
+{
+    struct json *relief = json_object(terrain, "relief");
+    if (!relief)
+        return;
+    ground->level = (int)json_integer(relief, "level", 0, 1, RELIEF_LEVEL_MAX);
+    ground->spike_m = json_number(relief, "spike_m", REQUIRED, 0, 10000);
+    ground->seed = (uint64_t)json_integer(relief, "seed", 1, 0, 1000000);
+    if (ground->image)
+        json_fail(terrain, "relief", "stands beside an image; allowed: one of them");
+}
+
 void describe_ground(struct arena *arena, struct json *root, struct description *description)
 {
     struct ground *ground = &description->ground;
@@ -173,6 +186,7 @@ void describe_ground(struct arena *arena, struct json *root, struct description 
     ground->height_m = json_number(terrain, "height_m", ground->image ? REQUIRED : 0, 0, 10000);
     if (!ground->image)
         refuse_key(terrain, "height_m", "an image");
+    describe_relief(terrain, ground);
     json_vector(terrain, "albedo", albedo, 3, 0, 1);
     memcpy(ground->albedo, albedo, sizeof albedo);
 }

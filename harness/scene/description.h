@@ -39,8 +39,11 @@ struct placement {
 struct ground {
     bool given;
     double size_m[2];  /* along x and z */
-    const char *image; /* path; NULL: flat */
+    const char *image; /* path; NULL: flat or a relief */
     double height_m;   /* of a white texel; black is 0 */
+    int level;         /* of a fractal relief (scene/relief.h); 0: none */
+    double spike_m;    /* its first displacement at most */
+    uint64_t seed;
     float albedo[3];
 };
 

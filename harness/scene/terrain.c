@@ -1,8 +1,10 @@
-/* Terrain: heights from an image or flat, normals, the triangulated surface and its height. */
+/* Terrain: heights from an image, of a fractal relief or flat, normals, the triangulated surface
+ * and its height. */
 #include "scene/terrain.h"
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "scene/relief.h"
 #include "wall/image.h"
 
 #include <string.h>
@@ -100,6 +102,15 @@ enum status terrain_build(struct arena *arena, const struct description *descrip
     if (!ground->given)
         return STATUS_OK;
     struct height_image heights = {2, 2, NULL};
+    double unit_m = ground->height_m;
+    if (ground->level) {
+        uint32_t samples[2];
+        unit_m = 1;
+        heights.values =
+            relief_heights(arena, ground->level, ground->spike_m, ground->seed, samples);
+        heights.width = samples[0];
+        heights.height = samples[1];
+    }
     if (ground->image) {
         enum status status = height_read(arena, ground->image, &heights, error);
         if (status != STATUS_OK)
@@ -113,7 +124,7 @@ enum status terrain_build(struct arena *arena, const struct description *descrip
     size_t count = (size_t)heights.width * heights.height;
     terrain->heights_m = ARENA_ARRAY(arena, float, count);
     for (size_t i = 0; heights.values && i < count; i++)
-        terrain->heights_m[i] = (float)(heights.values[i] * ground->height_m);
+        terrain->heights_m[i] = (float)(heights.values[i] * unit_m);
     terrain_normals(arena, terrain);
     return STATUS_OK;
 }

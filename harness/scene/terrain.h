@@ -1,4 +1,4 @@
-/* Terrain: a flat plane, or heights from an image; normals; the surface that everybody draws. */
+/* Terrain: a flat plane, heights from an image or a relief; normals; the surface that everybody draws. */
 #ifndef TREELINE_SCENE_TERRAIN_H
 #define TREELINE_SCENE_TERRAIN_H
 
