@@ -37,8 +37,7 @@ static void test_relief__has_the_triangles_of_the_papers_law(void **state)
 
 /* The level that made a vertex is where its index along x or z is odd in units of the stride: it
  * stands within that level's amplitude of its two neighbours' mean, and some come near it. */
-static void
-test_relief__moves_each_vertex_from_its_edges_middle_by_its_levels_amplitude(void **state)
+static void test_relief__moves_a_vertex_from_its_edges_middle_within_bounds(void **state)
 {
     (void)state;
     enum { LEVEL = 11 };
@@ -142,7 +141,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_relief__has_the_triangles_of_the_papers_law),
-        cmocka_unit_test(test_relief__moves_each_vertex_from_its_edges_middle_by_its_levels_amplitude),
+        cmocka_unit_test(test_relief__moves_a_vertex_from_its_edges_middle_within_bounds),
         cmocka_unit_test(test_relief__has_no_crack),
         cmocka_unit_test(test_relief__does_not_drift_upward),
         cmocka_unit_test(test_relief__is_the_same_for_a_seed_and_another_for_another),

@@ -25,7 +25,7 @@ static void describe_import(struct arena *arena, struct json *plant, struct plan
     entry->import.leaf_albedo = describe_albedo(arena, import, "leaf_albedo");
     entry->import.bark_albedo = describe_albedo(arena, import, "bark_albedo");
     if (import && (!entry->file || entry->generator))
-        json_fail(plant, "import", "stands without a mesh's file; allowed: together with file");
+        json_fail(plant, "import", "stands without a file of a mesh; allowed: together with file");
 }
 
 static void describe_coloring(struct json *plant, struct plant_entry *entry)
