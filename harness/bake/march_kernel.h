@@ -178,15 +178,12 @@ static inline struct lanes_sample sample_voxels(const struct march_job *job, lan
     struct lanes_sample sample;
     struct lanes_facing facing;
     lanes_int words[4];
-    words[0] = lanes_gather(job->voxels, at, mask);
-    words[2] = lanes_gather(job->voxels + 2, at, mask);
-    words[3] = lanes_gather(job->voxels + 3, at, mask);
+    lanes_gather_four(job->voxels, at, mask, words);
     lanes_int color = words[3];
     lanes evenness = lanes_all(1);
     if (job->by_mean) {
         facing = facing_by_mean(job, words);
     } else {
-        words[1] = lanes_gather(job->voxels + 1, at, mask);
         facing = facing_by_moments(job, words);
         evenness = 0.75f + lanes_of(color >> 24 & 15) * (1.0f / 60);
     }

@@ -66,6 +66,14 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (const int *)words, 4);
 }
 
+/* Four words from each place, whatever where the mask is not set. */
+static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_mask mask,
+                                     lanes_int got[4])
+{
+    for (int k = 0; k < 4; k++)
+        got[k] = lanes_gather(words + k, at, mask);
+}
+
 /* The byte at a place and the next in bits 0 to 15, whatever above them. Reads four bytes. */
 static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, lanes_mask mask)
 {
