@@ -140,6 +140,22 @@ static void plane_row(const struct backdrop_cpu *backdrop, float x_px, float y_p
     }
 }
 
+/* The same where all of the row sees it, without fog and suns. */
+static void plane_fill(const struct backdrop_cpu *backdrop, float x_px, float y_px, int count,
+                       float *depths_m, float (*rgb)[3])
+{
+    const struct backdrop_rays *rays = &backdrop->rays;
+    const float lift = backdrop->scene->terrain.heights_m[0] - backdrop->view.eye_m[1];
+    float lit[3];
+    plane_light(&backdrop->light, lift <= 0 ? 1 : -1, lit);
+    for (int k = 0; k < count; k++)
+        depths_m[k] =
+            lift / (rays->first[1] + (x_px + (float)k) * rays->right[1] + y_px * rays->down[1]);
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++)
+            rgb[k][i] = lit[i];
+}
+
 /* The flat terrain is convex, and so is what a row sees of it: its ends decide. */
 static bool plane_fills_row(const struct backdrop_cpu *backdrop, float x_px, float y_px, int count)
 {
@@ -210,10 +226,13 @@ void backdrop_cpu_tile(const struct backdrop_cpu *backdrop, const struct backdro
         float *depths_m = tile->depths_m + row * tile->stride;
         float(*rgb)[3] = tile->rgb + row * tile->stride;
         float x_px = (float)tile->x_px, y_px = (float)(tile->y_px + row);
-        if (!backdrop->flat || !plane_fills_row(backdrop, x_px, y_px, tile->width_px))
+        const bool filled = backdrop->flat && plane_fills_row(backdrop, x_px, y_px, tile->width_px);
+        if (!filled)
             sky_row(&backdrop->scene->sky, &backdrop->rays, x_px, y_px, tile->width_px, depths_m,
                     rgb);
-        if (backdrop->flat)
+        if (filled && !tile->suns && !(backdrop->light.fog_density_per_m > 0))
+            plane_fill(backdrop, x_px, y_px, tile->width_px, depths_m, rgb);
+        else if (backdrop->flat)
             plane_row(backdrop, x_px, y_px, tile->width_px, depths_m, rgb,
                       tile->suns ? tile->suns + row * tile->stride : NULL);
         for (int border = 0; border < backdrop->borders_count; border++)

@@ -63,27 +63,39 @@ void canvas_shade(struct canvas *canvas, const struct march_view *picture)
         }
 }
 
+/* A row of a block, count pixels of it. behind: what the backdrop shows there. */
+static void row_end(const struct march_rays *rays, int first, int count, float stop,
+                    const float (*behind)[3], float *pixels)
+{
+    float gains[MARCH_BLOCK], lefts[MARCH_BLOCK];
+    for (int k = 0; k < MARCH_BLOCK; k++) {
+        float left = rays->left[first + k];
+        bool shut = left <= stop; /* what was left would have been more of the same */
+        gains[k] = 1 / (1 - (shut ? left : 0));
+        lefts[k] = shut ? 0 : left;
+    }
+    for (int k = 0; k < count; k++) {
+        for (int c = 0; c < 3; c++)
+            pixels[4 * k + c] = gains[k] * rays->rgb[c][first + k] + lefts[k] * behind[k][c];
+        pixels[4 * k + 3] = 1 - lefts[k];
+    }
+}
+
 /* Pixels outside the picture were never opened. */
 void canvas_end(const struct canvas *canvas, float stop, const struct view *view, float *pixels)
 {
     const struct backdrop_tile *tile = &canvas->tile;
-    for (int row = 0; row < tile->height_px; row++)
-        for (int column = 0; column < tile->width_px; column++) {
-            const struct march_rays *rays =
-                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
-            int lane = row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK;
-            float left = rays->left[lane], gain = 1;
-            if (left <= stop) { /* what was left would have been more of the same */
-                gain = 1 / (1 - left);
-                left = 0;
-            }
-            float *pixel = pixels + 4 * ((size_t)(tile->y_px + row) * (size_t)view->width_px +
-                                         (size_t)(tile->x_px + column));
-            const float *behind = canvas->rgb[row * tile->stride + column];
-            for (int c = 0; c < 3; c++)
-                pixel[c] = gain * rays->rgb[c][lane] + left * behind[c];
-            pixel[3] = 1 - left;
+    for (int row = 0; row < tile->height_px; row++) {
+        const struct march_rays *rays = &canvas->blocks[row / MARCH_BLOCK * canvas->across];
+        const float(*behind)[3] = (const float(*)[3])canvas->rgb + row * tile->stride;
+        float *to =
+            pixels + 4 * ((size_t)(tile->y_px + row) * (size_t)view->width_px + (size_t)tile->x_px);
+        for (int column = 0; column < tile->width_px; column += MARCH_BLOCK) {
+            int rest = tile->width_px - column, first = row % MARCH_BLOCK * MARCH_BLOCK;
+            row_end(rays++, first, rest < MARCH_BLOCK ? rest : MARCH_BLOCK, stop, behind + column,
+                    to + 4 * column);
         }
+    }
 }
 
 /* A pixel's centre may see the ground before the tree that stands on it, since the tree is
