@@ -40,7 +40,7 @@ enum { CELLS, VOXELS, TREES, FIRSTS, ENTRIES, BUFFERS, DEPTH = BUFFERS, TEXTURES
 struct texels {
     uint16_t low[2], high[2]; /* pixels, both ends included, row 0 on top */
     uint32_t first_cell;
-    uint32_t size;   /* three times 10 bits; bit 30: smaller than a pixel */
+    uint32_t size;   /* three times 10 bits; bit 30: smaller than a pixel; 31: opaque */
     float where[3];  /* the eye in voxels from the box's corner; of a small tree: its middle on
                         the screen, from pixel centres, px; its area, px^2 */
     float per_m;     /* voxels a metre; of a small tree: its depth along the view, m */
@@ -62,6 +62,7 @@ struct state {
     struct options options;
     struct backdrop *backdrop;
     const struct voxels **volumes;              /* one a species */
+    const struct mesh **meshes;                 /* the same */
     uint32_t (*first_cells)[VOXELS_LEVELS_MAX]; /* one a species: in the buffer of cells */
     struct cull *cull;
     struct tiles *tiles;
@@ -145,6 +146,7 @@ static enum status prepare_volumes(struct workspace *workspace, struct state *st
     struct cull_bound *bounds =
         ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count);
     state->volumes = ARENA_ARRAY(workspace->arena, const struct voxels *, scene->species_count);
+    state->meshes = ARENA_ARRAY(workspace->arena, const struct mesh *, scene->species_count);
     state->first_cells =
         arena_alloc(workspace->arena, scene->species_count, sizeof *state->first_cells);
     for (size_t i = 0; i < scene->species_count; i++) {
@@ -156,6 +158,7 @@ static enum status prepare_volumes(struct workspace *workspace, struct state *st
         if (status)
             return status;
         bounds[i] = cull_bound_of(mesh);
+        state->meshes[i] = mesh;
     }
     state->cull = cull_create(workspace->arena, scene, bounds);
     return STATUS_OK;
@@ -166,7 +169,7 @@ static enum status make_program(struct workspace *workspace, const struct state 
 {
     struct arena *scratch = arena_create(0);
     const char *defines =
-        arena_printf(scratch, "FIRST 256u\nPROBES 2\n%s%s%s%s",
+        arena_printf(scratch, "FIRST 256u\nPROBES 2\nSOLID %g\n%s%s%s%s", (double)march_solid,
                      scene_is_stretched(state->scene) ? "STRETCHED 1\n" : "",
                      state->options.smooth > 0 ? "SMOOTH 1\n" : "",
                      state->options.model ? "ISOTROPIC 1\n" : "", counts ? "COUNT 1\n" : "");
@@ -312,8 +315,9 @@ static void see(const struct state *state, const struct picture *picture, uint32
         texels->low[i] = (uint16_t)rect->low[i];
         texels->high[i] = (uint16_t)rect->high[i];
     }
+    bool within = !outline.before && march_within_bark(view, tree, state->meshes[tree->species]);
     texels->first_cell = state->first_cells[tree->species][piece->level];
-    texels->size = pack_10(grid->size) | (uint32_t)piece->small << 30;
+    texels->size = pack_10(grid->size) | (uint32_t)piece->small << 30 | (uint32_t)within << 31;
     texels->turn[0] = tree->cosine / tree->stretch;
     texels->turn[1] = tree->sine / tree->stretch;
     float clear = march_box_clear(&box, picture->fog_density);

@@ -155,7 +155,7 @@ void main()
         // The ray from where it enters the box, in voxels.
         float weight = 1.0, along = 0.0, span;
         vec3 start = vec3(0.0);
-        if ((place.w >> 30) != 0u) {
+        if ((place.w >> 30 & 1u) != 0u) {
             // Smaller than a pixel: spread over the four pixels around its middle, also where their centres see the
             // ground before its foot: two pixels farther up that is behind it.
             vec2 off = max(1.0 - abs(vec2(at) - where.xy), 0.0);
@@ -172,6 +172,7 @@ void main()
         }
         if (!held)
             span = 0.0;
+        float thick = (place.w >> 31) != 0u ? SOLID : 1.0;  // the eye is in the tree's bark
         float leap = 1.0 / max(abs(u.x), max(abs(u.y), abs(u.z)));
         ivec3 grid = ivec3(size);
         vec3 most = size - 0.5;
@@ -193,7 +194,8 @@ void main()
                     along = max(along + limits.z, middle + (float(cell) - 1.0) * leap);
             }
             bool empty = cell < FIRST;
-            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)), empty ? 0.0 : drawn * pace, f_eye,
+            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)),
+                                    empty ? 0.0 : drawn * thick * pace, f_eye,
                                     f_sun, f_both, rise * rise - 1.0);
 #ifdef COUNT
             lookups += empty || pace == 0.0 ? 0u : 2u;

@@ -205,14 +205,19 @@ static void light_around(struct stand *stand)
     }
 }
 
-/* In the crown, out of it and at the trunk; within the trunk, whose walls voxels let through. */
+/* In the crown, out of it and at the trunk; within the trunk. */
 static void look_from_within(struct stand *stand)
 {
     static const struct fault limits[SUBJECTS] = {{0.01, 0.02, 0.01},
                                                   {0.01, 0.02, 0.01},
                                                   {0.01, 0.02, 0.01},
                                                   {0.26, 0.6, 0.1},
-                                                  {0.26, 0.75, 0.16}};
+                                                  {0.26, 0.75, 0.16}},
+                              within[SUBJECTS] = {{0.001, 0.001, 0.02},
+                                                  {0.001, 0.001, 0.02},
+                                                  {0.001, 0.001, 0.02},
+                                                  {0.001, 0.001, 0.02},
+                                                  {0.001, 0.001, 0.02}};
     static const float looks[][2][3] = {{{0.7f, 4.5f, 0.2f}, {3, 4.7f, -2}},
                                         {{0.7f, 4.5f, 0.2f}, {0, 2, 0}},
                                         {{0, 2, 0}, {1, 2.2f, 0.6f}}};
@@ -220,7 +225,7 @@ static void look_from_within(struct stand *stand)
         struct view view;
         stand->scene->camera.fov_y_rad = 1;
         view_look_at(stand->scene, looks[i][0], looks[i][1], &view);
-        stand_add(stand, &view, limits);
+        stand_add(stand, &view, i < 2 ? limits : within);
     }
 }
 

@@ -50,6 +50,7 @@ static enum status species_fill(struct workspace *workspace, struct plant *plant
     if (options->model == MARCH_VISIBLE)
         species->voxels = voxels_visible(workspace->arena, species->voxels);
     *bound = cull_bound_of(mesh);
+    species->mesh = mesh;
     float square = 0;
     for (int i = 0; i < 3; i++) {
         float half = 0.5f * (mesh->maximum_m[i] - mesh->minimum_m[i]);

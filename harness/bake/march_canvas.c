@@ -175,7 +175,7 @@ static void march_level(struct canvas *canvas, const struct march_view *picture,
     march_job_fill(picture, tree, part->level, (float)from[0] + half, (float)from[1] + half, &job);
     job.near_m = fmaxf(job.near_m, part->from_m);
     job.far_m = part->to_m;
-    job.thinned = part->thinned;
+    job.thinned = seen->within ? 1 - march_solid : part->thinned;
     for (int i = 0; i < 2; i++) {
         low[i] = block_clamp((seen->low[i] - from[i]) / MARCH_BLOCK, canvas->across);
         high[i] = block_clamp((seen->high[i] - from[i]) / MARCH_BLOCK, canvas->across);

@@ -90,13 +90,14 @@ static struct march_seen see_voxels(const struct march_view *picture, const stru
 {
     const struct march_species *species = &picture->species[tree->species];
     const struct view *view = picture->view;
-    struct march_seen seen = {{0, 0}, {-1, -1}, 0, 0, 0, 0};
+    struct march_seen seen = {.high = {-1, -1}};
     float detail = march_detail_of(view, tree, species->voxels, picture->focal_px,
                                    picture->options.bias, depth_m);
     seen.level = (uint8_t)detail;
     seen.next = next_share(detail - floorf(detail), picture->options.smooth);
     struct march_box box = march_box_of(view, tree, species->voxels, seen.level + (seen.next > 0));
     struct march_outline outline = march_outline_of(view, &box, picture->focal_px);
+    seen.within = !outline.before && march_within_bark(view, tree, species->mesh);
     for (int i = 0; i < 2 && outline.any; i++)
         march_seen_between(&seen, i, ceilf(outline.low[i]), floorf(outline.high[i]),
                            i ? view->height_px : view->width_px);

@@ -10,6 +10,7 @@
 /* A species as the march has it. */
 struct march_species {
     const struct voxels *voxels;
+    const struct mesh *mesh;
     float center_m[3]; /* of the finest level's box, in the plant's axes */
     float half_m[3];   /* its half extents */
     float radius_m;    /* of a sphere around it that holds the plant */
@@ -42,6 +43,7 @@ struct march_seen {
     uint8_t next; /* share of 255 that is drawn at the next coarser level */
     uint8_t far;  /* share of 255 that is drawn from a far picture: of a sprite, as a splat */
     uint8_t gone; /* share of 255 that a cell, or what is in this one, shows instead */
+    bool within;  /* the eye is in its bark */
 };
 struct march_seen march_see(const struct march_view *picture, const struct march_tree *tree,
                             float depth_m);

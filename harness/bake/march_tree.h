@@ -53,4 +53,12 @@ struct march_outline {
 struct march_outline march_outline_of(const struct view *view, const struct march_box *box,
                                       float focal_px);
 
+/* True where all of the picture's near plane lies within bark that is closed around it: where every
+ * horizontal way out of it leaves bark once more than it enters some. Of such a tree any voxel is
+ * opaque. mesh: of the tree's plant. */
+bool march_within_bark(const struct view *view, const struct march_tree *tree,
+                       const struct mesh *mesh);
+/* Then optical depths are so many times as large. */
+static const float march_solid = 1000;
+
 #endif
