@@ -177,21 +177,23 @@ void main()
         ivec3 grid = ivec3(size);
         vec3 most = size - 0.5;
         vec3 gathered = vec3(0.0);
-        float before = left;
+        float before = left, stride = min(limits.z, 1.0);  // from empty space on no voxel is jumped over
         do {
             // Through empty space.
             uint cell = 0u;
             float pace = 0.0;
             for (int probe = 0; probe < PROBES; probe++) {
-                pace = clamp(span - along, 0.0, limits.z);
+                pace = clamp(span - along, 0.0, stride);
                 float middle = along + 0.5 * pace;
                 ivec3 p = ivec3(clamp(start + middle * u, vec3(0.0), most));
 #ifdef COUNT
                 lookups += pace > 0.0 && cell < FIRST ? 1u : 0u;  // else it finds the same again
 #endif
                 cell = texelFetch(cells, int(place.z) + (p.z * grid.y + p.y) * grid.x + p.x).r;
-                if (cell < FIRST)
-                    along = max(along + limits.z, middle + (float(cell) - 1.0) * leap);
+                if (cell < FIRST) {
+                    along = max(along + stride, middle + (float(cell) - 1.0) * leap);
+                    stride = min(limits.z, 1.0);
+                }
             }
             bool empty = cell < FIRST;
             vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)),
@@ -200,7 +202,8 @@ void main()
 #ifdef COUNT
             lookups += empty || pace == 0.0 ? 0u : 2u;
 #endif
-            along += empty ? 0.0 : limits.z;
+            along += empty ? 0.0 : stride;
+            stride = empty ? stride : limits.z;
             float share = min(left * (1.0 - met.a) * weight, left);
             left -= share;
             gathered += share * met.rgb;

@@ -248,7 +248,7 @@ static void test_extremes__leaves_that_hide_nothing_leave_the_trunk(void **state
                                                   {0.27, 0.27, 0.16},
                                                   {0.27, 0.27, 0.15},
                                                   {0.18, 0.19, 0.2},
-                                                  {0.27, 0.29, 0.18}};
+                                                  {0.27, 0.29, 0.2}};
     struct arena *arena = arena_create(0);
     struct mesh *mesh = tree_mesh(arena, 300);
     struct texture *clear = ARENA_NEW(arena, struct texture);
