@@ -50,6 +50,9 @@ void shadow_volume_size(struct arena *arena, const struct voxels *voxels,
                         struct shadow_volume *volume);
 void shadow_volume_sweep(const struct voxels *voxels, enum march_model model,
                          struct shadow_volume *volume);
+/* Room for plates of the volume's size; the coarser ones from the finest. */
+void shadow_volume_lay_plates(struct arena *arena, struct shadow_volume *volume);
+void shadow_volume_halve_plates(const struct shadow_volume *volume);
 /* At a place across the light, m, averaged over about width_m; nothing outside. */
 struct shadow_plate shadow_volume_plate(const struct shadow_volume *volume, const float across_m[2],
                                         float width_m);

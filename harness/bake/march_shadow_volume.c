@@ -37,6 +37,17 @@ static size_t plates_lay(struct shadow_volume *volume)
     return count;
 }
 
+void shadow_volume_lay_plates(struct arena *arena, struct shadow_volume *volume)
+{
+    size_t plates = plates_lay(volume);
+    volume->plates[0] = shadow_room(arena, volume->plates[0], plates, &volume->plates_capacity,
+                                    sizeof *volume->plates[0]);
+    for (int level = 1; level < volume->plates_count; level++)
+        volume->plates[level] =
+            volume->plates[level - 1] +
+            (size_t)volume->plates_size[level - 1][0] * (size_t)volume->plates_size[level - 1][1];
+}
+
 void shadow_volume_size(struct arena *arena, const struct voxels *voxels,
                         const struct shadow_axes *frame, float stretch, float cell_m,
                         struct shadow_volume *volume)
@@ -63,13 +74,7 @@ void shadow_volume_size(struct arena *arena, const struct voxels *voxels,
     }
     size_t passes = 4 + (size_t)volume->size[0] * (size_t)volume->size[1] * (size_t)volume->size[2];
     volume->passes = shadow_room(arena, volume->passes, passes, &volume->capacity, 1);
-    size_t plates = plates_lay(volume);
-    volume->plates[0] = shadow_room(arena, volume->plates[0], plates, &volume->plates_capacity,
-                                    sizeof *volume->plates[0]);
-    for (int level = 1; level < volume->plates_count; level++)
-        volume->plates[level] =
-            volume->plates[level - 1] +
-            (size_t)volume->plates_size[level - 1][0] * (size_t)volume->plates_size[level - 1][1];
+    shadow_volume_lay_plates(arena, volume);
 }
 
 /* Optical depth of a voxel's side along the form's direction. */
@@ -136,6 +141,12 @@ static void plate_halve(const struct shadow_volume *volume, int level)
         }
 }
 
+void shadow_volume_halve_plates(const struct shadow_volume *volume)
+{
+    for (int level = 1; level < volume->plates_count; level++)
+        plate_halve(volume, level);
+}
+
 void shadow_volume_sweep(const struct voxels *voxels, enum march_model model,
                          struct shadow_volume *volume)
 {
@@ -163,8 +174,7 @@ void shadow_volume_sweep(const struct voxels *voxels, enum march_model model,
             plate->first_m = plate->cover * volume->low_m[2] + volume->cell_m * plate->first_m;
             plate->last_m = plate->cover * volume->low_m[2] + volume->cell_m * plate->last_m;
         }
-    for (int level = 1; level < volume->plates_count; level++)
-        plate_halve(volume, level);
+    shadow_volume_halve_plates(volume);
 }
 
 struct shadow_plate shadow_volume_plate(const struct shadow_volume *volume, const float across_m[2],

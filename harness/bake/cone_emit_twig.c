@@ -1,0 +1,279 @@
+/* A twig: what it is in a view, its level, and the strip of all of it. */
+#include "bake/cone_emit.h"
+#include "bake/cone_emit_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265f
+
+static float dot3(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* 0 up to low, 1 from high on, smooth. */
+static float ramp(float at, float low, float high)
+{
+    float share = (at - low) / (high - low);
+    share = share > 0 ? share < 1 ? share : 1 : 0;
+    return share * share * (3 - 2 * share);
+}
+
+struct cone_mix cone_mix_of(const struct cone_choice *choice, float needle_px, float distance_m)
+{
+    /* A level turns into the next over a quarter of an octave to each side, or a tenth of a
+     * distance. */
+    static const float wide = 1.1892071f, wide_limit = 1.1f;
+    struct cone_mix mix = {{0, 0, 0}};
+    float finer[2];
+    if (choice->forced >= 0) {
+        mix.shares[choice->forced] = 1;
+        return mix;
+    }
+    for (int k = 0; k < 2; k++) {
+        float size = k == 0 ? choice->needle_px : choice->twig_px, limit = choice->limits_m[k];
+        if (limit > 0)
+            finer[k] = 1 - ramp(distance_m, limit / wide_limit, limit * wide_limit);
+        else
+            finer[k] = ramp(needle_px, size / wide, size * wide);
+    }
+    mix.shares[CONE_NEEDLE] = finer[0];
+    mix.shares[CONE_CONE] = fmaxf(finer[1] - finer[0], 0);
+    mix.shares[CONE_TWIG] = 1 - mix.shares[CONE_NEEDLE] - mix.shares[CONE_CONE];
+    return mix;
+}
+
+static struct cone_mix mix_at(const struct cone_picture *picture, const struct cone_tree *tree,
+                              const struct cone_twig *twig, float depth_m, float distance_m)
+{
+    float px = picture->focal_px / fmaxf(depth_m, picture->view->near_m);
+    return cone_mix_of(&picture->choice, px * tree->scale * twig->twig->needle_length_m,
+                       distance_m);
+}
+
+size_t cone_twig_most(const struct cone_picture *picture, const struct cone_tree *tree,
+                      const struct cone_twig *twig, float depth_m)
+{
+    /* size falls as distance grows: nothing finer than at the nearest place */
+    struct cone_mix near = mix_at(picture, tree, twig, depth_m, depth_m);
+    size_t count = 2, cones = twig->twig->cones_count;
+    if (near.shares[CONE_NEEDLE] > 0)
+        count += cones * twig->twig->needles_count;
+    if (near.shares[CONE_NEEDLE] < 1)
+        count += 2 * cones;
+    return count;
+}
+
+float cone_light_of(const struct cone_tree *tree, const struct cone_twig_view *seen, uint32_t cone)
+{
+    return tree->light.cones
+               ? seen->gain * (float)tree->light.cones[seen->twig->first_cone + cone] / 255
+               : 1;
+}
+
+float cone_sphere_of(const struct cone_twig *twig, uint32_t cone, float apex_m[3],
+                     float center_m[3])
+{
+    const struct conifer_twig *from = twig->twig;
+    float along = twig->cone_0_m + (float)cone * from->spacing_m;
+    float rise = 0.5f * from->needle_length_m * twig->cosine;
+    for (int i = 0; i < 3; i++) {
+        apex_m[i] = twig->base_m[i] + along * twig->axis[i];
+        center_m[i] = apex_m[i] + rise * twig->axis[i];
+    }
+    return sqrtf(rise * rise + twig->radius_m * twig->radius_m) + from->needle_radius_m;
+}
+
+/* Optical depths over a radius that replace all needles of a twig by a cylinder of even density,
+ * closed by discs: its outline is 2 R (L s + pi / 2 R |c|). */
+static void depths_of(const struct cone_twig *twig, float needles_m2, const float direction[3],
+                      const float shares[2], float depths[2])
+{
+    float flat = sqrtf(direction[0] * direction[0] + direction[1] * direction[1]);
+    float outline_m2 = 2 * twig->radius_m *
+                       (twig->length_m * flat + 0.5f * PI * twig->radius_m * fabsf(direction[2]));
+    float depth = 4 / PI * needles_m2 / fmaxf(outline_m2, 1e-20f);
+    float sum = fmaxf(shares[0] + shares[1], 1e-9f);
+    depths[0] = depth * shares[0] / sum;
+    depths[1] = depth * shares[1] / sum;
+}
+
+/* All needles of a cone, as large as they look at a mean sine. */
+static float needles_of(const struct conifer_twig *twig, const float seen[2])
+{
+    return (float)twig->needles_count * 2 * twig->needle_radius_m * twig->needle_length_m * 0.5f *
+           (seen[0] + seen[1]);
+}
+
+static void view_depths(const struct cone_tree *tree, struct cone_twig_view *seen)
+{
+    const struct cone_twig *twig = seen->twig;
+    const struct cone_sight *sight = &seen->sight;
+    const float cones = (float)twig->twig->cones_count;
+    seen->needles_m2 = needles_of(twig->twig, seen->halves.seen);
+    depths_of(twig, cones * seen->needles_m2, sight->eye, seen->halves.seen, seen->depths.eye);
+    seen->depths.sun[0] = seen->depths.sun[1] = 0;
+    seen->depths.cosine = 1;
+    seen->depths.sine = 0;
+    if (tree->light.cones) {
+        struct cone_sight from_sun = {.exponent = 0};
+        memcpy(from_sun.sun, sight->sun, sizeof from_sun.sun);
+        memcpy(from_sun.eye, sight->sun, sizeof from_sun.eye);
+        struct cone_halves lit = cone_halves_of(twig->sine, twig->cosine, &from_sun);
+        depths_of(twig, cones * needles_of(twig->twig, lit.seen), sight->sun, lit.seen,
+                  seen->depths.sun);
+        float c = sight->sun[0] * sight->eye[0] + sight->sun[1] * sight->eye[1];
+        float s = sight->sun[0] * sight->eye[1] - sight->sun[1] * sight->eye[0];
+        float length = sqrtf(c * c + s * s);
+        seen->depths.cosine = length > 1e-9f ? c / length : 1;
+        seen->depths.sine = length > 1e-9f ? s / length : 0;
+    }
+    seen->disc = cone_disc_of(&seen->depths);
+}
+
+/* False: not drawn. */
+static bool view_of(const struct cone_picture *picture, const struct cone_tree *tree, size_t index,
+                    struct cone_twig_view *seen)
+{
+    const struct cone_twig *twig = seen->twig = &tree->plant->twigs[index];
+    const struct conifer *conifer = tree->plant->conifer;
+    float middle_m[3], camera_m[3], eye[3];
+    float reach_m = cone_twig_reach(twig, middle_m);
+    cone_to_camera(tree, middle_m, camera_m);
+    if (camera_m[2] + tree->scale * reach_m <= picture->view->near_m)
+        return false;
+    for (int i = 0; i < 3; i++)
+        eye[i] = tree->eye_m[i] - middle_m[i];
+    float away = fmaxf(sqrtf(dot3(eye, eye)), 1e-20f);
+    for (int i = 0; i < 3; i++) {
+        const float *axis = i == 0 ? twig->across : i == 1 ? twig->along : twig->axis;
+        seen->plant_sight.eye[i] = eye[i] / away;
+        seen->plant_sight.sun[i] = tree->sun[i];
+        seen->sight.eye[i] = dot3(axis, eye) / away;
+        seen->sight.sun[i] = dot3(axis, tree->sun);
+    }
+    seen->sight.two_sided = seen->plant_sight.two_sided =
+        picture->effects & EFFECT_TWO_SIDED && !tree->light.cones;
+    seen->sight.exponent = seen->plant_sight.exponent =
+        conifer->needle_specular > 0 ? conifer->needle_exponent : 0;
+    seen->grown = tree->twigs_grown * fminf(tree->twigs - (float)index, 1);
+    seen->gain = tree->light.cones ? cone_tree_light_gain(&tree->light, middle_m) : 1;
+    seen->mix = mix_at(picture, tree, twig, camera_m[2], tree->scale * away);
+    seen->axis_shine = 0;
+    if (twig->twig->axis_radius_m > 0)
+        seen->axis_shine = cone_needle_shine(twig->axis, &seen->plant_sight).diffuse;
+    return true;
+}
+
+/* The bark of a twig's axis by itself. */
+static size_t axis_emit(const struct cone_picture *picture, const struct cone_tree *tree,
+                        const struct cone_twig_view *seen, float share, struct cone_strip *strip)
+{
+    const struct conifer_twig *from = seen->twig->twig;
+    struct cone_rod rod = {.radius_m = {from->axis_radius_m, from->axis_radius_m}};
+    if (!(from->axis_radius_m > 0))
+        return 0;
+    for (int i = 0; i < 3; i++) {
+        rod.ends_m[0][i] = from->base_m[i];
+        rod.ends_m[1][i] = from->base_m[i] + from->length_m * from->axis[i];
+    }
+    rod.radius_m[0] *= seen->grown;
+    rod.radius_m[1] *= seen->grown;
+    if (!cone_strip_place(picture, tree, &rod, strip))
+        return 0;
+    const struct cone_material material = {tree->plant->conifer->bark_albedo, 0};
+    const struct cone_shine white = {1, 0};
+    cone_strip_color(picture, &material, &white, strip);
+    cone_strip_round(tree, &rod, false, seen->axis_shine, strip);
+    strip->opacity = cone_opacity_part(1, share);
+    if (tree->light.cones && from->cones_count) {
+        float own = expf(-cone_disc_depth(seen->depths.sun, 0, 0));
+        strip->lit[0] = own * cone_light_of(tree, seen, 0);
+        strip->lit[1] = own * cone_light_of(tree, seen, from->cones_count - 1);
+    } else {
+        strip->lit[0] = strip->lit[1] = seen->gain;
+    }
+    return 1;
+}
+
+/* Light of the first and second half of a twig's cones, and what of it the twig leaves to what is
+ * seen: needles of both halves of the disc and, between them, the bark. */
+static void twig_light(const struct cone_picture *picture, const struct cone_tree *tree,
+                       const struct cone_twig_view *seen, struct cone_strip *strip)
+{
+    const struct conifer_twig *from = seen->twig->twig;
+    const struct conifer *conifer = tree->plant->conifer;
+    const struct cone_disc *disc = &seen->disc;
+    const struct cone_material needles = {conifer->needle_albedo, conifer->needle_specular};
+    const struct cone_material bark = {conifer->bark_albedo, 0};
+    float band = fminf(from->axis_radius_m / seen->twig->radius_m, 1);
+    float behind = (disc->opacity - disc->opacity_front) * (1 - band);
+    float axis = band * expf(-seen->depths.eye[0]), sum = disc->opacity_front + behind + axis;
+    struct cone_strip other = *strip;
+    struct cone_shine shine = {0, 0}, axis_shine = {seen->axis_shine, 0};
+    for (int back = 0; back < 2; back++) {
+        float lit = disc->lit[back] * (back ? 1 - band : 1) / fmaxf(sum, 1e-9f);
+        shine.diffuse += lit * seen->halves.shine[back].diffuse;
+        shine.gloss += lit * seen->halves.shine[back].gloss;
+    }
+    cone_strip_color(picture, &needles, &shine, strip);
+    cone_strip_color(picture, &bark, &axis_shine, &other);
+    float share = axis / fmaxf(sum, 1e-9f), own = expf(-cone_disc_depth(seen->depths.sun, 0, 0));
+    for (int c = 0; c < 3; c++) {
+        strip->shade[c] += share * (other.shade[c] - strip->shade[c]);
+        strip->sun[c] += share * own * other.sun[c];
+    }
+    strip->opacity = cone_opacity_part(fminf(sum, 1), seen->mix.shares[CONE_TWIG]);
+    uint32_t half = (from->cones_count + 1) / 2;
+    for (int end = 0; end < 2 && tree->light.cones; end++) {
+        uint32_t first = end ? from->cones_count - half : 0;
+        float light = 0;
+        for (uint32_t k = 0; k < half; k++)
+            light += cone_light_of(tree, seen, first + k);
+        strip->lit[end] = light / (float)half;
+    }
+}
+
+static size_t whole_emit(const struct cone_picture *picture, const struct cone_tree *tree,
+                         const struct cone_twig_view *seen, struct cone_strip *strip)
+{
+    const struct cone_twig *twig = seen->twig;
+    const float grown = sqrtf(fmaxf(seen->grown, 0));
+    const float from_m = 0.5f * twig->twig->needle_length_m * twig->cosine;
+    const float longer_m = 0.5f * (grown - 1) * twig->length_m;
+    struct cone_rod rod = {.radius_m = {grown * twig->radius_m, grown * twig->radius_m}};
+    for (int i = 0; i < 3; i++) {
+        rod.ends_m[0][i] = twig->base_m[i] + (from_m - longer_m) * twig->axis[i];
+        rod.ends_m[1][i] =
+            twig->base_m[i] + (from_m + twig->length_m + longer_m) * twig->axis[i];
+    }
+    if (!cone_strip_place(picture, tree, &rod, strip))
+        return 0;
+    twig_light(picture, tree, seen, strip);
+    return 1;
+}
+
+size_t cone_twig_emit(const struct cone_picture *picture, const struct cone_tree *tree, size_t index,
+                      const struct cone_beam *beam, struct cone_strip *strips)
+{
+    struct cone_twig_view seen;
+    size_t count = 0;
+    if (!view_of(picture, tree, index, &seen))
+        return 0;
+    if (!seen.twig->twig->cones_count) {
+        seen.depths.sun[0] = seen.depths.sun[1] = 0;
+        return axis_emit(picture, tree, &seen, 1, strips);
+    }
+    seen.halves = cone_halves_of(seen.twig->sine, seen.twig->cosine, &seen.sight);
+    view_depths(tree, &seen);
+    if (seen.mix.shares[CONE_TWIG] > 0)
+        count += whole_emit(picture, tree, &seen, strips);
+    if (seen.mix.shares[CONE_TWIG] < 1)
+        count += axis_emit(picture, tree, &seen, 1 - seen.mix.shares[CONE_TWIG], strips + count);
+    if (seen.mix.shares[CONE_CONE] > 0)
+        count += cone_cones_emit(picture, tree, &seen, beam, strips + count);
+    if (seen.mix.shares[CONE_NEEDLE] > 0)
+        count += cone_needles_emit(picture, tree, &seen, beam, strips + count);
+    return count;
+}

@@ -1,0 +1,35 @@
+/* How much of the sun reaches the bark, the twigs and their cones of needles, and the ground.
+ *
+ * In each plant, as it is turned, one sweep away from the sun: a twig takes the light that the
+ * twigs and the bark before it have left over, then leaves less. What twigs do to themselves is
+ * their shader's. All trees together are laid into a map seen from the sun that holds what its rays
+ * pass (march_shadow_parts.h, Lokovic and Veach 2000); from it every tree gets the light on its side
+ * of the sun. */
+#ifndef TREELINE_BAKE_CONE_LIGHT_H
+#define TREELINE_BAKE_CONE_LIGHT_H
+
+#include "bake/cone_plant.h"
+#include "method/method.h"
+
+struct cone_lights;
+
+/* plants: one a species; all stay. */
+struct cone_lights *cone_lights_create(struct arena *arena, const struct scene *scene,
+                                       struct cone_plant *const *plants);
+/* Nothing happens where the sun stands as at the last call. */
+void cone_lights_turn(struct cone_lights *lights, const float sun_direction[3], int threads);
+
+/* A tree's: shares 0..255 of what falls on its side of the sun. */
+struct cone_tree_light {
+    const uint8_t *cones, *barks; /* as the plant's, twigs' cones one after the other */
+    const uint8_t *gains;         /* side x side, up of right: what falls on its side of the sun */
+    float to_gains[2][4];         /* of places in the plant's axes at scale 1 */
+    int side;
+};
+void cone_lights_of_tree(const struct cone_lights *lights, size_t instance,
+                         struct cone_tree_light *light);
+float cone_tree_light_gain(const struct cone_tree_light *light, const float place_m[3]);
+/* Share of the sun that reaches a place in the world, m, through trees and terrain. */
+float cone_lights_at(const struct cone_lights *lights, const float place_m[3]);
+
+#endif

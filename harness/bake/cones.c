@@ -1,0 +1,71 @@
+/* Conifers' frame: plants, light, canvas, and one of the two ways over them. */
+#include "bake/cones.h"
+#include "bake/cones_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+enum status cones_prepare(struct workspace *workspace, const struct scene *scene,
+                          const struct cones_options *options, struct cones **result)
+{
+    struct arena *arena = workspace->arena;
+    struct cones *cones = *result = ARENA_NEW(arena, struct cones);
+    struct cull_bound *bounds = ARENA_ARRAY(arena, struct cull_bound, scene->species_count);
+    enum status status = STATUS_OK;
+    *cones = (struct cones){.arena = arena, .scene = scene, .options = *options};
+    cones->plants = ARENA_ARRAY(arena, struct cone_plant *, scene->species_count);
+    for (size_t i = 0; i < scene->species_count; i++) {
+        const struct conifer *conifer;
+        status = plant_conifer(scene->species[i].plant, &conifer, workspace->error);
+        if (status)
+            return status;
+        struct cone_plant *plant = cones->plants[i] = cone_plant_create(arena, conifer);
+        float x = plant->center_m[0], z = plant->center_m[2];
+        bounds[i] = (struct cull_bound){plant->center_m[1], plant->radius_m + sqrtf(x * x + z * z)};
+    }
+    if (options->shadows && workspace->effects & EFFECT_SUN_SHADOWS)
+        cones->lights = cone_lights_create(arena, scene, cones->plants);
+    cones->canvas = cone_canvas_create(workspace, scene, cones->lights, options->edges, &status);
+    if (status)
+        return status;
+    cones->cull = cull_create(arena, scene, bounds);
+    if (options->is_naive)
+        cones->naive = cones_naive_create(arena, cones);
+    else
+        cones->fast = cones_fast_create(arena, cones);
+    return STATUS_OK;
+}
+
+static struct cone_picture picture_of(const struct workspace *workspace, const struct cones *cones,
+                                      const struct view *view)
+{
+    const struct scene *scene = cones->scene;
+    const unsigned effects = workspace->effects;
+    struct cone_picture picture = {
+        .view = view,
+        .scene = scene,
+        .effects = effects,
+        .focal_px = cull_focal_px(view),
+        .fog_density_per_m = effects & EFFECT_FOG ? scene->fog.density_per_m : 0,
+        .choice = cones->options.choice,
+        .plants = cones->plants,
+        .lights = cones->lights,
+    };
+    memcpy(picture.sun, scene->sun.radiance, sizeof picture.sun);
+    if (effects & EFFECT_AMBIENT)
+        memcpy(picture.ambient, scene->ambient, sizeof picture.ambient);
+    return picture;
+}
+
+enum status cones_draw(struct workspace *workspace, struct cones *cones, const struct view *view,
+                       struct target *target)
+{
+    const struct cone_picture picture = picture_of(workspace, cones, view);
+    if (cones->lights)
+        cone_lights_turn(cones->lights, view->sun_direction, workspace->threads);
+    cone_canvas_begin(workspace, cones->canvas, view);
+    workspace->tally.lookups += cones->naive ? cones_naive_draw(workspace, cones, &picture)
+                                             : cones_fast_draw(workspace, cones, &picture);
+    cone_canvas_end(workspace, cones->canvas, cones->options.stop, target->pixels);
+    return STATUS_OK;
+}

@@ -1,0 +1,30 @@
+/* What both ways to draw conifers share. */
+#ifndef TREELINE_BAKE_CONES_PARTS_H
+#define TREELINE_BAKE_CONES_PARTS_H
+
+#include "bake/cones.h"
+
+struct cones_fast;
+struct cones_naive;
+
+struct cones {
+    struct arena *arena;
+    const struct scene *scene;
+    struct cones_options options;
+    struct cone_plant **plants;
+    struct cone_lights *lights; /* NULL: no shadows wanted */
+    struct cone_canvas *canvas;
+    struct cull *cull;
+    struct cones_fast *fast;
+    struct cones_naive *naive; /* one of both is NULL */
+};
+
+struct cones_fast *cones_fast_create(struct arena *arena, const struct cones *cones);
+/* Returns how many strips there were. */
+uint64_t cones_fast_draw(struct workspace *workspace, struct cones *cones,
+                         const struct cone_picture *picture);
+struct cones_naive *cones_naive_create(struct arena *arena, const struct cones *cones);
+uint64_t cones_naive_draw(struct workspace *workspace, struct cones *cones,
+                          const struct cone_picture *picture);
+
+#endif
