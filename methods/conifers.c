@@ -1,7 +1,7 @@
 /* conifers: needles, cones and twigs met by one cone a pixel, each with its own shader.
  *
- * The paper casts a cone a pixel, finds the trees that it meets, shades needles, cones of needles or
- * twigs by distance, and composes by coverage. Mended here: what its integrals lose
+ * The paper casts a cone a pixel, finds the trees that it meets, shades needles, cones of needles
+ * or twigs by distance, and composes by coverage. Mended here: what its integrals lose
  * (bake/cone_shade.h), the relief, which shares a pixel by depth and a mask (bake/cone_canvas.h),
  * shadows between twigs and trees (bake/cone_light.h), and levels that turn into each other. */
 #include "bake/cones.h"
@@ -27,7 +27,7 @@ static const struct option table[] = {
     OPTION(struct options, stop, 0.01, 0, 0.5, "", "a cone ends when it lets through no more"),
     OPTION(struct options, shadows, 1, 0, 1, "", "twigs, bark, trees and relief shade the sun; off: nothing does"),
     OPTION(struct options, edges, 1, 0, 1, "",
-           "relief is cut into layers of 16 samples where its edge crosses a pixel; off: a pixel's relief has one depth"),
+           "relief is cut into layers of 16 samples where its edge crosses a pixel; off: it has one depth"),
     OPTION_END,
 };
 /* clang-format on */
@@ -87,10 +87,12 @@ extern const struct method conifers_method;
 const struct method conifers_method = {
     .abi = METHOD_ABI,
     .name = "conifers",
-    .summary = "needles, cones and twigs with shaders of their own, met by one cone a pixel, on the CPU",
-    .source = "Hattab, Babahenini and Djedi, Un modele pour l'illumination analytique et hierarchique "
-              "des coniferes; Meyer and Neyret 2000, Multiscale shaders for the efficient realistic "
-              "rendering of pine-trees; Amanatides 1984",
+    .summary =
+        "needles, cones and twigs with shaders of their own, met by one cone a pixel, on the CPU",
+    .source =
+        "Hattab, Babahenini and Djedi, Un modele pour l'illumination analytique et hierarchique "
+        "des coniferes; Meyer and Neyret 2000, Multiscale shaders for the efficient realistic "
+        "rendering of pine-trees; Amanatides 1984",
     .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG,
     .options = table,
     .options_size = sizeof(struct options),

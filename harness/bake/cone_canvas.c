@@ -6,7 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { FINE = 4, SAMPLES = FINE * FINE, BLOCK = 8 }; /* samples along a pixel; pixels a fine block */
+enum {
+    FINE = 4,
+    SAMPLES = FINE * FINE,
+    BLOCK = 8
+}; /* samples along a pixel; pixels a fine block */
 
 struct cone_canvas *cone_canvas_create(struct workspace *workspace, const struct scene *scene,
                                        const struct cone_lights *lights, bool edges,
@@ -226,8 +230,7 @@ static void layers_pass(struct cone_canvas *canvas, size_t pixel, float depth_m)
 void cone_canvas_put(struct cone_canvas *canvas, size_t pixel, const struct cone_strip *strip,
                      const struct cone_place *place, float w)
 {
-    float depth_m =
-        strip->depths_m[0] + place->share * (strip->depths_m[1] - strip->depths_m[0]);
+    float depth_m = strip->depths_m[0] + place->share * (strip->depths_m[1] - strip->depths_m[0]);
     if (depth_m > canvas->front_m[pixel])
         layers_pass(canvas, pixel, depth_m);
     float part = w * canvas->left[pixel] * canvas->share[pixel];
@@ -248,8 +251,9 @@ static void layer_shade(const struct cone_canvas *canvas, size_t pixel, float de
     float x = (float)(pixel % (size_t)canvas->width_px);
     float y = (float)(pixel / (size_t)canvas->width_px), place_m[3];
     for (int i = 0; i < 3; i++)
-        place_m[i] = canvas->eye_m[i] + depth_m * (canvas->rays.first[i] + x * canvas->rays.right[i] +
-                                                   y * canvas->rays.down[i]);
+        place_m[i] =
+            canvas->eye_m[i] + depth_m * (canvas->rays.first[i] + x * canvas->rays.right[i] +
+                                          y * canvas->rays.down[i]);
     float dark = (1 - cone_lights_at(canvas->lights, place_m)) * sun;
     for (int c = 0; c < 3; c++)
         rgb[c] -= dark * canvas->scene->terrain.albedo[c] * canvas->scene->sun.radiance[c];

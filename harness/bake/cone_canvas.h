@@ -21,8 +21,8 @@ struct cone_layer {
 struct cone_canvas {
     struct arena *arena;
     const struct scene *scene;
-    struct backdrop_cpu *backdrop, *fine; /* fine: of four times the pixels; NULL: flat */
-    const struct cone_lights *lights;     /* NULL: none */
+    struct backdrop_cpu *backdrop, *fine;  /* fine: of four times the pixels; NULL: flat */
+    const struct cone_lights *lights;      /* NULL: none */
     int width_px, height_px, across, down; /* tiles */
     size_t pixels_capacity, tiles_capacity, edges_capacity;
     float *left, *share, *front_m, *rgb[3]; /* a pixel */

@@ -55,8 +55,8 @@ void cone_tree_of(const struct cone_picture *picture, size_t index, struct cone_
     cone_to_camera(tree, tree->plant->center_m, middle_m);
     px /= fmaxf(middle_m[2] - instance->scale * tree->plant->radius_m, view->near_m);
     float area_px2 = px * px * tree->plant->area_m2;
-    tree->twigs = kept_of(tree->plant->twigs_count, picture->choice.thin, area_px2,
-                          &tree->twigs_grown);
+    tree->twigs =
+        kept_of(tree->plant->twigs_count, picture->choice.thin, area_px2, &tree->twigs_grown);
     tree->barks = kept_of(tree->plant->barks_count - tree->plant->trunks_count,
                           picture->choice.thin, area_px2, &tree->barks_grown);
     tree->barks += (float)tree->plant->trunks_count;

@@ -1,5 +1,5 @@
-/* From a tree in a view down its hierarchy to strips: which level a twig is drawn at, and what it is
- * there. */
+/* From a tree in a view down its hierarchy to strips: which level a twig is drawn at, and what it
+ * is there. */
 #ifndef TREELINE_BAKE_CONE_EMIT_H
 #define TREELINE_BAKE_CONE_EMIT_H
 
@@ -9,11 +9,11 @@
 enum cone_level { CONE_NEEDLE, CONE_CONE, CONE_TWIG, CONE_LEVELS };
 
 struct cone_choice {
-    int forced;                /* a level, or -1 */
-    float needle_px, twig_px;  /* needles at least so long are drawn one by one; shorter: by twigs */
-    float limits_m[2];         /* the paper's lim1, lim2; 0: by size */
-    float thin;                /* twigs a pixel of a tree's outline; fewer, larger ones are drawn where
-                                  there are more; 0: all */
+    int forced;               /* a level, or -1 */
+    float needle_px, twig_px; /* needles at least so long are drawn one by one; shorter: by twigs */
+    float limits_m[2];        /* the paper's lim1, lim2; 0: by size */
+    float thin; /* twigs a pixel of a tree's outline; fewer, larger ones are drawn where
+                   there are more; 0: all */
 };
 
 /* Constants of a picture. */
@@ -36,7 +36,7 @@ struct cone_tree {
     float eye_m[3], sun[3];           /* in the plant's axes; the eye at scale 1 */
     float sun_camera[3];
     float scale;
-    float twigs, barks; /* how many of the first ones are drawn, the last one partly */
+    float twigs, barks;             /* how many of the first ones are drawn, the last one partly */
     float twigs_grown, barks_grown; /* how much more area each then has */
     struct cone_tree_light light;
 };
@@ -52,8 +52,8 @@ struct cone_mix cone_mix_of(const struct cone_choice *choice, float needle_px, f
 size_t cone_twig_most(const struct cone_picture *picture, const struct cone_tree *tree,
                       const struct cone_twig *twig, float depth_m);
 
-/* Strips of a twig or a piece of bark; returns how many. sphere: of the twig's cones those alone are
- * wanted that touch a beam, or NULL: all. */
+/* Strips of a twig or a piece of bark; returns how many. sphere: of the twig's cones those alone
+ * are wanted that touch a beam, or NULL: all. */
 struct cone_beam {
     float origin_m[3], direction[3]; /* in the plant's axes; unit */
     float wide_m, spread;            /* its radius at the origin, and how that grows */

@@ -6,8 +6,8 @@
 
 #define PI 3.14159265f
 
-/* Light along a needle, at its base and its tip: what the twig leaves on the way to the sun. azimuth:
- * of the needle, cosine and sine, in the twig's axes. */
+/* Light along a needle, at its base and its tip: what the twig leaves on the way to the sun.
+ * azimuth: of the needle, cosine and sine, in the twig's axes. */
 static void needle_light(const struct cone_twig_view *seen, const float azimuth[2], float light,
                          float lit[2])
 {
@@ -104,8 +104,8 @@ static bool sheet_place(const struct cone_picture *picture, const struct cone_tr
 {
     const struct cone_twig *twig = seen->twig;
     const float grown = sqrtf(fmaxf(seen->grown, 0));
-    float flat = sqrtf(seen->sight.eye[0] * seen->sight.eye[0] +
-                       seen->sight.eye[1] * seen->sight.eye[1]);
+    float flat =
+        sqrtf(seen->sight.eye[0] * seen->sight.eye[0] + seen->sight.eye[1] * seen->sight.eye[1]);
     float rim_m = grown * twig->radius_m, begin_m = rim_m * fmaxf(1 - flat, 0.1f);
     struct cone_rod rod = {.radius_m = {begin_m, rim_m}};
     float rise_m = twig->twig->needle_length_m * twig->cosine;

@@ -245,8 +245,7 @@ static size_t whole_emit(const struct cone_picture *picture, const struct cone_t
     struct cone_rod rod = {.radius_m = {grown * twig->radius_m, grown * twig->radius_m}};
     for (int i = 0; i < 3; i++) {
         rod.ends_m[0][i] = twig->base_m[i] + (from_m - longer_m) * twig->axis[i];
-        rod.ends_m[1][i] =
-            twig->base_m[i] + (from_m + twig->length_m + longer_m) * twig->axis[i];
+        rod.ends_m[1][i] = twig->base_m[i] + (from_m + twig->length_m + longer_m) * twig->axis[i];
     }
     if (!cone_strip_place(picture, tree, &rod, strip))
         return 0;
@@ -254,8 +253,8 @@ static size_t whole_emit(const struct cone_picture *picture, const struct cone_t
     return 1;
 }
 
-size_t cone_twig_emit(const struct cone_picture *picture, const struct cone_tree *tree, size_t index,
-                      const struct cone_beam *beam, struct cone_strip *strips)
+size_t cone_twig_emit(const struct cone_picture *picture, const struct cone_tree *tree,
+                      size_t index, const struct cone_beam *beam, struct cone_strip *strips)
 {
     struct cone_twig_view seen;
     size_t count = 0;

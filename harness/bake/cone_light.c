@@ -45,8 +45,8 @@ static void kinds_turn(struct cone_lights *lights)
     for (size_t i = 0; i < lights->scene->instances_count; i++) {
         const struct instance *instance = &lights->scene->instances[i];
         struct cone_kind *kind = kind_of(lights, instance);
-        double away_rad = (double)instance->rotation_rad -
-                          step_rad * (double)((kind - lights->kinds) % TURNS);
+        double away_rad =
+            (double)instance->rotation_rad - step_rad * (double)((kind - lights->kinds) % TURNS);
         kind->turn_rad += away_rad - 2 * M_PI * rint(away_rad / (2 * M_PI));
         kind->trees++;
     }
@@ -146,8 +146,8 @@ static float light_at(const struct cone_lights *lights, const float place_m[3])
     const bool low = terrain->samples_x > 0 && lights->sun_direction[1] < 0;
     float world_m[3];
     for (int i = 0; i < 3 && (low || lights->terrain_m); i++)
-        world_m[i] = place_m[0] * lights->frame.axes[0][i] +
-                     place_m[1] * lights->frame.axes[1][i] + place_m[2] * lights->frame.axes[2][i];
+        world_m[i] = place_m[0] * lights->frame.axes[0][i] + place_m[1] * lights->frame.axes[1][i] +
+                     place_m[2] * lights->frame.axes[2][i];
     if (low && is_underground(lights, world_m))
         return 0;
     if (!low && lights->terrain_m && shadow_terrain_at(terrain, lights->terrain_m, world_m) <= 0)

@@ -3,8 +3,8 @@
  * In each plant, as it is turned, one sweep away from the sun: a twig takes the light that the
  * twigs and the bark before it have left over, then leaves less. What twigs do to themselves is
  * their shader's. All trees together are laid into a map seen from the sun that holds what its rays
- * pass (march_shadow_parts.h, Lokovic and Veach 2000); from it every tree gets the light on its side
- * of the sun. */
+ * pass (march_shadow_parts.h, Lokovic and Veach 2000); from it every tree gets the light on its
+ * side of the sun. */
 #ifndef TREELINE_BAKE_CONE_LIGHT_H
 #define TREELINE_BAKE_CONE_LIGHT_H
 

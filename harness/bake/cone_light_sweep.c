@@ -1,5 +1,5 @@
-/* Light within a plant: twigs and bark in the order in which the sun meets them, on a grid of what is
- * left. */
+/* Light within a plant: twigs and bark in the order in which the sun meets them, on a grid of what
+ * is left. */
 #include "bake/cone_light_parts.h"
 #include "bake/cone_shade.h"
 #include "bake/cull.h"
@@ -34,13 +34,12 @@ void cone_kind_lay(struct arena *arena, const struct cone_plant *plant,
     int32_t half = (int32_t)ceilf(plant->radius_m / volume->cell_m);
     for (int k = 0; k < 3; k++) {
         volume->size[k] = 2 * half;
-        volume->low_m[k] =
-            dot3(frame->axes[k], plant->center_m) - (float)half * volume->cell_m;
+        volume->low_m[k] = dot3(frame->axes[k], plant->center_m) - (float)half * volume->cell_m;
     }
     const size_t texels = (size_t)volume->size[0] * (size_t)volume->size[1];
     shadow_volume_lay_plates(arena, volume);
-    kind->passes = shadow_room(arena, kind->passes, 3 * texels, &kind->texels_capacity,
-                               sizeof *kind->passes);
+    kind->passes =
+        shadow_room(arena, kind->passes, 3 * texels, &kind->texels_capacity, sizeof *kind->passes);
     kind->firsts_m = kind->passes + texels;
     kind->lasts_m = kind->firsts_m + texels;
     if (kind->cones)
@@ -133,10 +132,9 @@ static void twig_pass(const struct cone_twig *twig, struct cone_kind *kind)
     float flat = sqrtf(sight.sun[0] * sight.sun[0] + sight.sun[1] * sight.sun[1]);
     float needles_m2 = (float)from->needles_count * 2 * from->needle_radius_m *
                        from->needle_length_m * 0.5f * (halves.seen[0] + halves.seen[1]);
-    float outline_m2 =
-        2 * twig->radius_m *
-        (from->spacing_m * flat +
-         0.5f * PI * twig->radius_m * fabsf(sight.sun[2]) / (float)from->cones_count);
+    float outline_m2 = 2 * twig->radius_m *
+                       (from->spacing_m * flat + 0.5f * PI * twig->radius_m * fabsf(sight.sun[2]) /
+                                                     (float)from->cones_count);
     float half_m = 0.5f * sqrtf(outline_m2), place_m[3];
     float opacity = 1 - expf(-needles_m2 / fmaxf(outline_m2, 1e-20f));
     for (uint32_t k = 0; k < from->cones_count; k++) {
@@ -180,10 +178,10 @@ static void plates_fill(struct cone_kind *kind)
     const size_t texels = (size_t)kind->volume.size[0] * (size_t)kind->volume.size[1];
     for (size_t k = 0; k < texels; k++) {
         float cover = 1 - kind->passes[k];
-        kind->volume.plates[0][k] = cover > 0
-                                        ? (struct shadow_plate){cover, cover * kind->firsts_m[k],
-                                                                cover * kind->lasts_m[k]}
-                                        : (struct shadow_plate){0, 0, 0};
+        kind->volume.plates[0][k] =
+            cover > 0
+                ? (struct shadow_plate){cover, cover * kind->firsts_m[k], cover * kind->lasts_m[k]}
+                : (struct shadow_plate){0, 0, 0};
     }
     shadow_volume_halve_plates(&kind->volume);
 }

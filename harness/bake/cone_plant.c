@@ -1,5 +1,5 @@
-/* A conifer's pieces: bark cut so short that depth orders it, twigs with their frames, both dealt in
- * an order in which every beginning is a fair sample. */
+/* A conifer's pieces: bark cut so short that depth orders it, twigs with their frames, both dealt
+ * in an order in which every beginning is a fair sample. */
 #include "bake/cone_plant.h"
 #include "base/random.h"
 

@@ -1,5 +1,5 @@
-/* A conifer as cones of pixels meet it: pieces of bark and twigs in one order in which any beginning
- * is a fair sample of all, with what of a twig does not depend on the view. */
+/* A conifer as cones of pixels meet it: pieces of bark and twigs in one order in which any
+ * beginning is a fair sample of all, with what of a twig does not depend on the view. */
 #ifndef TREELINE_BAKE_CONE_PLANT_H
 #define TREELINE_BAKE_CONE_PLANT_H
 
@@ -12,10 +12,10 @@ struct cone_bark {
 
 struct cone_twig {
     float base_m[3], axis[3], across[3], along[3];
-    float cone_0_m;  /* where the first cone stands along the axis */
-    float length_m;  /* cones_count x spacing */
-    float radius_m;  /* of the cylinder that its needles fill */
-    float sine, cosine; /* of phi */
+    float cone_0_m;      /* where the first cone stands along the axis */
+    float length_m;      /* cones_count x spacing */
+    float radius_m;      /* of the cylinder that its needles fill */
+    float sine, cosine;  /* of phi */
     uint32_t first_cone; /* among the cones of the plant */
     const struct conifer_twig *twig;
 };

@@ -86,7 +86,8 @@ struct cone_halves cone_halves_of(float sine, float cosine, const struct cone_si
     const float ex = flat > 1e-6f ? eye[0] / flat : 1, ey = flat > 1e-6f ? eye[1] / flat : 0;
     struct cone_halves halves = {{0, 0}, {{0, 0}, {0, 0}}};
     for (int node = 0; node < 4; node++) {
-        float c = cosf(nodes[node / 2]), s = node & 1 ? -sinf(nodes[node / 2]) : sinf(nodes[node / 2]);
+        float c = cosf(nodes[node / 2]),
+              s = node & 1 ? -sinf(nodes[node / 2]) : sinf(nodes[node / 2]);
         for (int back = 0; back < 2; back++) {
             float x = back ? -c : c;
             const float axis[3] = {sine * (x * ex - s * ey), sine * (x * ey + s * ex), cosine};

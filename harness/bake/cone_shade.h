@@ -24,14 +24,14 @@ struct cone_shine cone_needle_shine(const float axis[3], const struct cone_sight
 /* Needles around the axis at an angle, as they are seen (Eq 6 to 11) by means over the half nearer
  * to the eye and the other one. */
 struct cone_halves {
-    float seen[2];               /* mean of the sine between needle and eye, of each half */
-    struct cone_shine shine[2];  /* of what is seen of each */
+    float seen[2];              /* mean of the sine between needle and eye, of each half */
+    struct cone_shine shine[2]; /* of what is seen of each */
 };
 struct cone_halves cone_halves_of(float sine, float cosine, const struct cone_sight *sight);
 
 /* Eq 14 on a disc of radius 1: optical depths over a radius, of the half nearer to the eye and of
- * the other one, toward the eye and, each half that is nearer to the sun or not, toward the sun; and
- * the angle between both around the axis. */
+ * the other one, toward the eye and, each half that is nearer to the sun or not, toward the sun;
+ * and the angle between both around the axis. */
 struct cone_depths {
     float eye[2], sun[2], cosine, sine;
 };

@@ -21,11 +21,11 @@ struct cone_strip {
     float shade[3];       /* radiance: by the sky, and fog's */
     float sun[3];         /* by the sun, times lit */
     float lit[2];         /* at both ends */
-    float across, toward; /* of a wide cylinder: the sun's direction across the strip (along[] turned
-                             by +90 degrees) and toward the eye */
+    float across, toward; /* of a wide cylinder: the sun's direction across the strip (along[]
+                             turned by +90 degrees) and toward the eye */
     float round;          /* 0: even across it, mean times the sun; 1: a cylinder's light */
     float mean;
-    float two_sided;      /* 1: light from behind counts */
+    float two_sided; /* 1: light from behind counts */
 };
 
 /* Overlap of [at - 1/2, at + 1/2] with [low, high]. */

@@ -1,6 +1,6 @@
 /* Conifers drawn by one cone a pixel through trees, twigs, cones and needles, on the CPU: pixel by
- * pixel through bounding hierarchies, or all pixels together, the hierarchy descended once a picture
- * and what it ends in put to tiles of pixels, front to back. Both give the same picture. */
+ * pixel through bounding hierarchies, or all pixels together, the hierarchy descended once a
+ * picture and what it ends in put to tiles of pixels, front to back. Both give the same picture. */
 #ifndef TREELINE_BAKE_CONES_H
 #define TREELINE_BAKE_CONES_H
 

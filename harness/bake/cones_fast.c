@@ -1,6 +1,6 @@
 /* All cones of a picture together: trees front to back in batches, each descended once to strips,
- * strips sorted by depth and binned to tiles, tiles composed by all threads. Trees behind tiles that
- * are closed are left out. */
+ * strips sorted by depth and binned to tiles, tiles composed by all threads. Trees behind tiles
+ * that are closed are left out. */
 #include "bake/cones_parts.h"
 #include "bake/march_shadow_parts.h"
 
@@ -90,7 +90,6 @@ static bool tree_is_open(const struct cones *cones, const struct cone_picture *p
 /* Where the next batch begins: a tree of the list and one of its items. */
 struct place {
     size_t tree, item;
-
 };
 
 /* The most strips that an item can become. */
@@ -167,10 +166,10 @@ static void job_emit(const struct cones *cones, const struct cone_picture *pictu
     size_t to = job->place;
     for (size_t item = job->first; item < job->last; item++) {
         size_t from = to;
-        size_t end = from + (item < twigs ? cone_twig_emit(picture, tree, item, NULL,
-                                                           &fast->strips[from])
-                                          : cone_bark_emit(picture, tree, item - twigs,
-                                                           &fast->strips[from]));
+        size_t end =
+            from + (item < twigs
+                        ? cone_twig_emit(picture, tree, item, NULL, &fast->strips[from])
+                        : cone_bark_emit(picture, tree, item - twigs, &fast->strips[from]));
         for (; from < end; from++)
             if (rect_of(cones->canvas, &fast->strips[from], &fast->rects[to])) {
                 if (to != from)
@@ -220,8 +219,8 @@ static void bin(struct workspace *workspace, struct cones *cones, size_t count)
     const int threads = workspace->threads;
     const size_t tiles = (size_t)canvas->across * (size_t)canvas->down, run = tiles + 1;
     const size_t size = run * ((size_t)threads + 1);
-    fast->first = shadow_room(cones->arena, fast->first, size, &fast->first_capacity,
-                              sizeof *fast->first);
+    fast->first =
+        shadow_room(cones->arena, fast->first, size, &fast->first_capacity, sizeof *fast->first);
     memset(fast->first, 0, size * sizeof *fast->first);
     for (int pass = 0; pass < 2; pass++) {
 #pragma omp parallel for num_threads(threads) schedule(static, 1)
@@ -252,8 +251,7 @@ static void row_cut(const struct cone_strip *strip, float half, float y, int *fi
     }
     if (fabsf(ax) > 1e-3f) {
         float a = strip->from_px[0] + (-strip->beyond_px[0] - 0.5f - v * ay) / ax;
-        float b =
-            strip->from_px[0] + (strip->length_px + strip->beyond_px[1] + 0.5f - v * ay) / ax;
+        float b = strip->from_px[0] + (strip->length_px + strip->beyond_px[1] + 0.5f - v * ay) / ax;
         low = fmaxf(low, fminf(a, b));
         high = fminf(high, fmaxf(a, b));
     }
@@ -286,10 +284,10 @@ static void strip_draw(struct cone_canvas *canvas, const struct cone_strip *stri
 /* Whether more can be seen through a tile. */
 static bool is_open(const struct cone_canvas *canvas, const int tile[2], float stop)
 {
-    const int right = tile[0] + CONE_TILE < canvas->width_px ? tile[0] + CONE_TILE
-                                                              : canvas->width_px;
-    const int bottom = tile[1] + CONE_TILE < canvas->height_px ? tile[1] + CONE_TILE
-                                                                : canvas->height_px;
+    const int right =
+        tile[0] + CONE_TILE < canvas->width_px ? tile[0] + CONE_TILE : canvas->width_px;
+    const int bottom =
+        tile[1] + CONE_TILE < canvas->height_px ? tile[1] + CONE_TILE : canvas->height_px;
     for (int y = tile[1]; y < bottom; y++) {
         const size_t row = (size_t)y * (size_t)canvas->width_px;
         float most = 0;

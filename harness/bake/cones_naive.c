@@ -1,6 +1,6 @@
 /* The straightforward way, a cone a pixel as the paper has it: down the hierarchy of trees, in each
- * down that of its twigs and bark, everything that is met computed there and then; all met of a pixel
- * is sorted by depth and composed. */
+ * down that of its twigs and bark, everything that is met computed there and then; all met of a
+ * pixel is sorted by depth and composed. */
 #include "bake/cone_bvh.h"
 #include "bake/cones_parts.h"
 
@@ -94,11 +94,9 @@ static struct cone_beam beam_in(const struct cone_picture *picture, const struct
                                 float x_px, float y_px, const struct cone_beam *world)
 {
     struct cone_beam beam = *world;
-    const float camera[3] = {(x_px - 0.5f * (float)(picture->view->width_px - 1)) /
-                                 picture->focal_px,
-                             (0.5f * (float)(picture->view->height_px - 1) - y_px) /
-                                 picture->focal_px,
-                             1};
+    const float camera[3] = {
+        (x_px - 0.5f * (float)(picture->view->width_px - 1)) / picture->focal_px,
+        (0.5f * (float)(picture->view->height_px - 1) - y_px) / picture->focal_px, 1};
     float length = sqrtf(camera[0] * camera[0] + camera[1] * camera[1] + 1);
     for (int i = 0; i < 3; i++) {
         beam.origin_m[i] = tree->eye_m[i];
@@ -135,9 +133,8 @@ static void tree_meet(const struct cones *cones, const struct cone_picture *pict
     cone_tree_of(picture, instance, &tree);
     const struct cone_beam beam = beam_in(picture, &tree, x_px, y_px, world);
     const size_t twigs = tree.plant->twigs_count;
-    size_t found = cone_bvh_find(
-        cones->naive->items[cones->scene->instances[instance].species], &beam, work->items,
-        cones->naive->items_most, &work->met);
+    size_t found = cone_bvh_find(cones->naive->items[cones->scene->instances[instance].species],
+                                 &beam, work->items, cones->naive->items_most, &work->met);
     for (size_t k = 0; k < found; k++) {
         size_t item = work->items[k], count = 0;
         if (item < twigs && (float)item < tree.twigs)

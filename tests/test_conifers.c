@@ -1,0 +1,310 @@
+/* Conifers by one cone a pixel: needles against closed forms, levels against the ray tracer, both
+ * ways against each other. */
+#include "reference_world.h"
+
+#include "bake/cones.h"
+#include "plant/conifer.h"
+
+#include <stdlib.h>
+
+/* What is drawn unless a test says otherwise: all of it, at one level. */
+static struct cones_options options_of(int level)
+{
+    return (struct cones_options){.choice = {.forced = level, .needle_px = 6, .twig_px = 2.5f},
+                                  .shadows = true,
+                                  .edges = true};
+}
+
+/* Twigs on one hardly visible branch far below. */
+static struct plant *plant_of(struct arena *arena, const struct conifer_twig *twigs, size_t count)
+{
+    struct conifer *conifer = ARENA_NEW(arena, struct conifer);
+    struct error error = {0};
+    conifer->branches_count = 1;
+    conifer->branches = ARENA_NEW(arena, struct conifer_branch);
+    *conifer->branches = (struct conifer_branch){.from_m = {0, -0.1f, 0},
+                                                 .to_m = {0, -0.11f, 0},
+                                                 .radius_from_m = 1e-5f,
+                                                 .radius_to_m = 1e-5f,
+                                                 .twigs_count = (uint32_t)count};
+    conifer->twigs_count = count;
+    conifer->twigs = ARENA_ARRAY(arena, struct conifer_twig, count);
+    memcpy(conifer->twigs, twigs, count * sizeof *twigs);
+    conifer->needle_sides = 12;
+    for (int i = 0; i < 3; i++)
+        conifer->needle_albedo[i] = conifer->bark_albedo[i] = 0.5f;
+    if (conifer_finish(conifer, &error))
+        fail_msg("%s", error.text);
+    return plant_from_conifer(arena, "test", conifer);
+}
+
+static void plant_add(struct world *world, struct plant *plant)
+{
+    struct scene *scene = &world->scene;
+    scene->species[0] = (struct species){"test", plant, 1, 1, 1};
+    scene->species_count = 1;
+    scene->instances[scene->instances_count++] = (struct instance){{0, 0, 0}, 0, 1, 0, 1};
+}
+
+static struct frame *drawn(struct world *world, const struct cones_options *options,
+                           unsigned effects, int threads)
+{
+    struct error error = {0};
+    struct workspace workspace = {
+        .arena = world->arena, .error = &error, .effects = effects, .threads = threads};
+    struct frame *frame =
+        frame_create(world->arena, world->view.width_px, world->view.height_px, false);
+    struct target target = {frame->width_px, frame->height_px, TARGET_RGBA32F, 0, 0, 0,
+                            frame->rgba};
+    struct cones *cones;
+    if (cones_prepare(&workspace, &world->scene, options, &cones) ||
+        cones_draw(&workspace, cones, &world->view, &target))
+        fail_msg("%s", error.text);
+    return frame;
+}
+
+static double sum_of(const struct frame *frame, int channel)
+{
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)frame->width_px * (size_t)frame->height_px; i++)
+        sum += frame->rgba[4 * i + (size_t)channel];
+    return sum;
+}
+
+/* A twig at the origin along a direction, as dense as the paper's. */
+static struct conifer_twig twig_along(double x, double y, double z)
+{
+    double length = sqrt(x * x + y * y + z * z);
+    return (struct conifer_twig){
+        .axis = {(float)(x / length), (float)(y / length), (float)(z / length)},
+        .length_m = 0.24f,
+        .axis_radius_m = 1e-5f,
+        .cones_count = 12,
+        .spacing_m = 0.02f,
+        .needles_count = 12,
+        .needle_length_m = 0.05f,
+        .needle_radius_m = 0.0005f,
+        .needle_angle_rad = 0.7f,
+        .azimuth_step_rad = 0.9f};
+}
+
+static void test_conifers__a_needle_across_a_pixel_hides_its_width_of_it(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 6; k++) {
+        struct world world = world_create(33, 33, 0.1);
+        struct conifer_twig twig = twig_along(1, 0, 0);
+        twig.cones_count = twig.needles_count = 1;
+        twig.needle_angle_rad = 0; /* along the axis */
+        twig.base_m[0] = -twig.needle_length_m / 2 - 0.01f;
+        twig.needle_radius_m = 0.0001f * (float)(1 << k);
+        twig.axis_radius_m = 1e-9f;
+        plant_add(&world, plant_of(world.arena, &twig, 1));
+        world_look(&world, 0, 0, 5, 0, 0, 0);
+        struct cones_options options = options_of(CONE_NEEDLE);
+        struct frame *frame = drawn(&world, &options, 0, 1);
+        double pixel_m = 2 * tan(0.05) * 5 / 33;
+        double expected = fmin(2 * (double)twig.needle_radius_m / pixel_m, 1);
+        double alpha = frame->rgba[4 * (16 * 33 + 16) + 3];
+        if (fabs(alpha - expected) > 1e-3)
+            fail_msg("radius %g m: %g; expected %g", (double)twig.needle_radius_m, alpha, expected);
+        /* and light: R_d of a cylinder lit from above, seen from the side, is 1/4 */
+        double radiance = frame->rgba[4 * (16 * 33 + 16)];
+        if (expected < 0.5 && fabs(radiance - 0.5 * 0.25 * expected) > 0.01 * expected)
+            fail_msg("radius %g m: radiance %g", (double)twig.needle_radius_m, radiance);
+        arena_destroy(world.arena);
+    }
+}
+
+/* Coverage and light of all levels of a twig, from so far, against the tracer's. */
+static void levels_check(double x, double y, double z, float distance_m)
+{
+    for (int level = 0; level < CONE_LEVELS; level++) {
+        struct world world = world_create(48, 48, 0.05);
+        struct conifer_twig twig = twig_along(x, y, z);
+        plant_add(&world, plant_of(world.arena, &twig, 1));
+        world_look(&world, 0, 0.05f, distance_m, 0.1f, 0.05f, 0);
+        world_sun(&world, 0.5, 0.7, 0.4);
+        struct cones_options options = options_of(level);
+        struct reference_options traced = {
+            .effects = EFFECT_SUN_SHADOWS, .samples_min = 64, .samples_max = 64, .threads = 2};
+        struct reference_stats stats;
+        struct frame *ours = drawn(&world, &options, EFFECT_SUN_SHADOWS, 1);
+        struct frame *truth = world_render(&world, traced, &stats);
+        double cover = sum_of(ours, 3) / sum_of(truth, 3);
+        double light = sum_of(ours, 0) / sum_of(truth, 0);
+        if (!(fabs(cover - 1) < 0.15) || !(fabs(light - 1) < 0.3))
+            fail_msg("level %d along %g %g %g at %g m: cover %.3f, light %.3f of the traced", level,
+                     x, y, z, (double)distance_m, cover, light);
+        arena_destroy(world.arena);
+    }
+}
+
+static void test_conifers__every_level_of_a_far_twig_covers_and_shines_as_traced(void **state)
+{
+    (void)state;
+    levels_check(1, 0, 0, 12);
+    levels_check(1, 0.5, 0.7, 12);
+    levels_check(1, 0.2, -0.5, 20);
+}
+
+static void test_conifers__relief_before_half_a_pixel_leaves_half_to_what_is_behind(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct workspace workspace = {.arena = arena, .threads = 1};
+    float left = 1, share = 1, front_m = 5, rgb[3] = {0, 0, 0}, suns = 0, behind[1][3] = {{0}};
+    int32_t edge = 0;
+    struct cone_layer layers[CONE_LAYERS] = {
+        {.depth_m = 5, .share = 0.5f, .rgb = {0.5f, 0, 0}},
+        {.depth_m = INFINITY, .share = 0.5f, .rgb = {0, 0.5f, 0}}};
+    struct cone_canvas canvas = {.width_px = 1,
+                                 .height_px = 1,
+                                 .left = &left,
+                                 .share = &share,
+                                 .front_m = &front_m,
+                                 .rgb = {&rgb[0], &rgb[1], &rgb[2]},
+                                 .suns = &suns,
+                                 .behind = behind,
+                                 .edges = &edge,
+                                 .layers = layers};
+    struct cone_strip strip = {.depths_m = {2, 2}, .shade = {0, 0, 1}, .mean = 1};
+    const struct cone_place place = {0.5f, 0};
+    float pixel[4];
+    cone_canvas_put(&canvas, 0, &strip, &place, 0.25f); /* before both */
+    strip.depths_m[0] = strip.depths_m[1] = 10;
+    cone_canvas_put(&canvas, 0, &strip, &place, 0.6f); /* between them */
+    cone_canvas_end(&workspace, &canvas, 0, pixel);
+    assert_true(fabs(pixel[0] - 0.75 * 0.5) < 1e-6);                /* the relief */
+    assert_true(fabs(pixel[1] - 0.75 * 0.4 * 0.5) < 1e-6);          /* the sky */
+    assert_true(fabs(pixel[2] - (0.25 + 0.75 * 0.6 * 0.5)) < 1e-6); /* both strips */
+    assert_true(fabs(pixel[3] - pixel[2]) < 1e-6);
+    arena_destroy(arena);
+}
+
+static void test_conifers__levels_turn_into_each_other_without_a_leap(void **state)
+{
+    (void)state;
+    struct cone_choice choice = {.forced = -1, .needle_px = 6, .twig_px = 2.5f};
+    for (int limits = 0; limits < 2; limits++) {
+        struct cone_mix before = {{0, 0, 0}};
+        choice.limits_m[0] = limits ? 20 : 0;
+        choice.limits_m[1] = limits ? 60 : 0;
+        for (int step = 0; step < 1000; step++) {
+            float distance_m = 2 * powf(1.005f, (float)step), sum = 0;
+            struct cone_mix mix = cone_mix_of(&choice, 120 / distance_m, distance_m);
+            for (int k = 0; k < CONE_LEVELS; k++) {
+                assert_true(mix.shares[k] >= 0 && mix.shares[k] <= 1);
+                assert_true(step == 0 || fabsf(mix.shares[k] - before.shares[k]) < 0.06f);
+                sum += mix.shares[k];
+            }
+            assert_true(fabsf(sum - 1) < 1e-6f);
+            if (step == 0)
+                assert_true(mix.shares[CONE_NEEDLE] == 1);
+            before = mix;
+        }
+        assert_true(before.shares[CONE_TWIG] == 1);
+    }
+}
+
+/* Twigs every way around a stem. */
+static struct plant *bush(struct arena *arena)
+{
+    enum { COUNT = 40 };
+    struct conifer_twig twigs[COUNT];
+    struct random random = random_seed(3, 1);
+    for (int k = 0; k < COUNT; k++) {
+        double turn = 2.4 * k, rise = 0.6 * random_double(&random);
+        twigs[k] = twig_along(cos(turn), rise, sin(turn));
+        twigs[k].base_m[1] = 0.02f * (float)k;
+        twigs[k].axis_radius_m = 0.002f;
+    }
+    return plant_of(arena, twigs, COUNT);
+}
+
+static void test_conifers__the_fast_way_draws_what_the_straightforward_one_does(void **state)
+{
+    (void)state;
+    const unsigned effects = EFFECT_SUN_SHADOWS | EFFECT_AMBIENT | EFFECT_FOG;
+    for (int level = -1; level < CONE_LEVELS; level++) {
+        struct world world = world_create(40, 36, 0.5);
+        struct scene *scene = &world.scene;
+        plant_add(&world, bush(world.arena));
+        scene->instances[scene->instances_count++] =
+            (struct instance){{0.4f, 0.1f, -2}, 1, 1.3f, 0, 1};
+        scene->fog = (struct fog){{0.2f, 0.3f, 0.4f}, 0.02f};
+        world_ground(&world, 30, 0.4f);
+        scene->ambient[0] = scene->ambient[1] = scene->ambient[2] = 0.3f;
+        world_look(&world, 0, 1, level == CONE_NEEDLE ? 2.0f : 3.5f, 0, 0.4f, 0);
+        world_sun(&world, 0.5, 0.7, 0.3);
+        struct cones_options options = options_of(level);
+        options.choice.thin = 1;
+        struct frame *fast = drawn(&world, &options, effects, 2);
+        struct frame *other = drawn(&world, &options, effects, 1);
+        options.is_naive = true;
+        struct frame *naive = drawn(&world, &options, effects, 2);
+        assert_memory_equal(fast->rgba, other->rgba, 40 * 36 * 4 * sizeof(float));
+        assert_true(sum_of(fast, 3) > 50);
+        for (size_t i = 0; i < 40 * 36 * 4; i++)
+            if (!(fabsf(fast->rgba[i] - naive->rgba[i]) < 1e-3f))
+                fail_msg("level %d, pixel %zu: %g, straightforward %g", level, i / 4,
+                         (double)fast->rgba[i], (double)naive->rgba[i]);
+        arena_destroy(world.arena);
+    }
+}
+
+static void test_conifers__fewer_and_larger_twigs_cover_as_much(void **state)
+{
+    (void)state;
+    double covers[2];
+    for (int thin = 0; thin < 2; thin++) {
+        struct world world = world_create(40, 36, 0.04);
+        plant_add(&world, bush(world.arena));
+        world_look(&world, 0, 0.5f, 200, 0, 0.4f, 0);
+        struct cones_options options = options_of(CONE_TWIG);
+        options.choice.thin = thin ? 2.0f : 0;
+        covers[thin] = sum_of(drawn(&world, &options, 0, 1), 3);
+        arena_destroy(world.arena);
+    }
+    assert_true(fabs(covers[1] / covers[0] - 1) < 0.15);
+}
+
+static void test_conifers__a_hundred_thousand_trees_take_less_than_256_bytes_each(void **state)
+{
+    (void)state;
+    size_t used[2];
+    for (int many = 0; many < 2; many++) {
+        struct world world = world_create(40, 36, 0.5);
+        struct error error = {0};
+        plant_add(&world, bush(world.arena));
+        const size_t count = many ? 100000 : 1;
+        struct workspace workspace = {
+            .arena = world.arena, .error = &error, .effects = EFFECT_SUN_SHADOWS, .threads = 1};
+        world.scene.instances_count = count;
+        world.scene.instances = ARENA_ARRAY(world.arena, struct instance, count);
+        for (size_t i = 0; i < count; i++)
+            world.scene.instances[i] =
+                (struct instance){{(float)(i % 317), 0, (float)(i / 317)}, 0, 1, 0, 1};
+        used[many] = arena_used_bytes(world.arena);
+        struct cones_options options = options_of(-1);
+        struct cones *cones;
+        assert_int_equal(cones_prepare(&workspace, &world.scene, &options, &cones), STATUS_OK);
+        used[many] = arena_used_bytes(world.arena) - used[many];
+        arena_destroy(world.arena);
+    }
+    assert_true((used[1] - used[0]) / 100000 < 256);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_conifers__a_needle_across_a_pixel_hides_its_width_of_it),
+        cmocka_unit_test(test_conifers__every_level_of_a_far_twig_covers_and_shines_as_traced),
+        cmocka_unit_test(test_conifers__relief_before_half_a_pixel_leaves_half_to_what_is_behind),
+        cmocka_unit_test(test_conifers__levels_turn_into_each_other_without_a_leap),
+        cmocka_unit_test(test_conifers__the_fast_way_draws_what_the_straightforward_one_does),
+        cmocka_unit_test(test_conifers__fewer_and_larger_twigs_cover_as_much),
+        cmocka_unit_test(test_conifers__a_hundred_thousand_trees_take_less_than_256_bytes_each),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
