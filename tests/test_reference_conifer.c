@@ -107,22 +107,23 @@ static void test_needle__has_flat_ends(void **state)
     }
 }
 
+static const struct conifer_twig bushy_twig = {.base_m = {0, -0.3f, 0},
+                                               .axis = {0, 1, 0},
+                                               .length_m = 0.6f,
+                                               .axis_radius_m = 0.02f,
+                                               .cones_count = 6,
+                                               .spacing_m = 0.1f,
+                                               .needles_count = 12,
+                                               .needle_length_m = 0.3f,
+                                               .needle_radius_m = 0.012f,
+                                               .needle_angle_rad = 0.8f,
+                                               .azimuth_rad = 0.1f,
+                                               .azimuth_step_rad = 0.7f};
+
 static void twig_picture(double x, double y, double z, uint32_t sides, double sums[2])
 {
     struct world world = world_of(x, y, z);
-    struct conifer_twig twig = {.base_m = {0, -0.3f, 0},
-                                .axis = {0, 1, 0},
-                                .length_m = 0.6f,
-                                .axis_radius_m = 0.02f,
-                                .cones_count = 6,
-                                .spacing_m = 0.1f,
-                                .needles_count = 12,
-                                .needle_length_m = 0.3f,
-                                .needle_radius_m = 0.012f,
-                                .needle_angle_rad = 0.8f,
-                                .azimuth_rad = 0.1f,
-                                .azimuth_step_rad = 0.7f};
-    struct conifer *conifer = conifer_new(world.arena, &twig, 1);
+    struct conifer *conifer = conifer_new(world.arena, &bushy_twig, 1);
     struct plant *plant = plant_from_conifer(world.arena, "twig", conifer);
     if (sides) {
         conifer->needle_sides = conifer->branch_sides = sides;
@@ -155,12 +156,42 @@ static void test_twig__of_prisms_converges_to_the_round_one(void **state)
     }
 }
 
+/* A tree is an instance of its plant, of any size, height and turn: the picture of a twig that is s
+ * times as large, s times as far, is the same. */
+static void test_twig__of_any_scale_looks_alike_from_as_many_times_as_far(void **state)
+{
+    (void)state;
+    static const float scales[] = {1, 0.3f, 0.55f, 0.9f, 1.2f, 4};
+    double alike = 0, lit = 0;
+    for (size_t k = 0; k < 6; k++) {
+        struct world world = world_create(SIDE_PX, SIDE_PX, 2 * atan(seen_m / 2 / distance_m));
+        double error, far_m = distance_m * (double)scales[k];
+        world_look(&world, 0, (float)(0.6 * far_m), (float)(0.8 * far_m), 0, 0, 0);
+        world_plant(&world, plant_from_conifer(world.arena, "twig",
+                                               conifer_new(world.arena, &bushy_twig, 1)));
+        world.scene.instances[0].scale = scales[k];
+        world_sun(&world, 1, 2, 1.5);
+        struct frame *frame =
+            world_render(&world,
+                         (struct reference_options){
+                             .effects = EFFECT_SUN_SHADOWS, .samples_min = 256, .samples_max = 256},
+                         NULL);
+        double alpha = frame_mean(frame, 3, &error), light = frame_mean(frame, 0, &error);
+        alike = k ? alike : alpha;
+        lit = k ? lit : light;
+        assert_float_equal(alpha / alike, 1, 0.003);
+        assert_float_equal(light / lit, 1, 0.006);
+        arena_destroy(world.arena);
+    }
+}
+
 /* clang-format off */
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_needle__reflects_what_the_closed_form_of_a_cylinder_says),
         cmocka_unit_test(test_needle__has_flat_ends),
+        cmocka_unit_test(test_twig__of_any_scale_looks_alike_from_as_many_times_as_far),
         cmocka_unit_test(test_twig__of_prisms_converges_to_the_round_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

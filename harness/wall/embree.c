@@ -2,6 +2,8 @@
  * embree_api4.h. */
 #include "wall/embree.h"
 
+#include "wall/embree_cones.h"
+
 /* clang-format off */
 #define TEXT(x) #x
 #define API_HEADER(version) TEXT(wall/embree_api##version.h)
@@ -9,6 +11,7 @@
 /* clang-format on */
 #include API_HEADER_OF(EMBREE_VERSION)
 
+#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -154,22 +157,84 @@ static enum status scene_end(struct embree *embree, struct mesh_scene *made, str
     return device_status(embree, "building a mesh", error);
 }
 
+static void cone_bounds(const struct RTCBoundsFunctionArguments *args)
+{
+    const float *ends = (const float *)args->geometryUserPtr + 8 * (size_t)args->primID;
+    float low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        /* Rounded outward by more than the additions' errors. */
+        low[i] = fminf(ends[i] - ends[3], ends[4 + i] - ends[7]);
+        high[i] = fmaxf(ends[i] + ends[3], ends[4 + i] + ends[7]);
+        low[i] -= 0x1p-22f * fabsf(low[i]);
+        high[i] += 0x1p-22f * fabsf(high[i]);
+    }
+    struct RTCBounds *bounds = args->bounds_o;
+    bounds->lower_x = low[0], bounds->lower_y = low[1], bounds->lower_z = low[2];
+    bounds->upper_x = high[0], bounds->upper_y = high[1], bounds->upper_z = high[2];
+}
+
+/* RTCRayN: N each of these; RTCHitN, behind it: N each of Ng_x, Ng_y, Ng_z, u, v, primID, geomID,
+ * instID. */
+enum { RAY_ORIGIN = 0, RAY_NEAR = 3, RAY_DIRECTION = 4, RAY_FAR = 8, RAY_VALUES = 12 };
+
+/* Lane i of n rays against a cone. */
+static bool cone_lane(const void *data, unsigned primitive, const float *rays, unsigned n,
+                      unsigned i, float *distance, float normal[3])
+{
+    float origin[3], direction[3];
+    for (unsigned axis = 0; axis < 3; axis++) {
+        origin[axis] = rays[(RAY_ORIGIN + axis) * n + i];
+        direction[axis] = rays[(RAY_DIRECTION + axis) * n + i];
+    }
+    return embree_cone_hit((const float *)data + 8 * (size_t)primitive, origin, direction,
+                           rays[RAY_NEAR * n + i], rays[RAY_FAR * n + i], distance, normal);
+}
+
+static void cone_intersect(const struct RTCIntersectFunctionNArguments *args)
+{
+    unsigned n = args->N;
+    float *rays = (float *)args->rayhit, *hits = rays + RAY_VALUES * n;
+    const uint32_t numbers[3] = {args->primID, args->geomID, args->context->instID[0]};
+    for (unsigned i = 0; i < n; i++) {
+        float distance, normal[3];
+        if (!args->valid[i] ||
+            !cone_lane(args->geometryUserPtr, args->primID, rays, n, i, &distance, normal))
+            continue;
+        rays[RAY_FAR * n + i] = distance;
+        for (unsigned k = 0; k < 3; k++) {
+            hits[k * n + i] = normal[k];
+            memcpy(hits + (5 + k) * n + i, &numbers[k], sizeof numbers[k]);
+        }
+        hits[3 * n + i] = hits[4 * n + i] = 0;
+    }
+}
+
+static void cone_occluded(const struct RTCOccludedFunctionNArguments *args)
+{
+    unsigned n = args->N;
+    float *rays = (float *)args->ray;
+    for (unsigned i = 0; i < n; i++) {
+        float distance, normal[3];
+        if (args->valid[i] &&
+            cone_lane(args->geometryUserPtr, args->primID, rays, n, i, &distance, normal))
+            rays[RAY_FAR * n + i] = -INFINITY;
+    }
+}
+
 enum status embree_add_cones(struct embree *embree, const struct embree_cones *sets,
                              size_t sets_count, struct error *error)
 {
     struct mesh_scene *made = scene_begin(embree);
     for (size_t i = 0; i < sets_count; i++) {
         size_t count = sets[i].cones_count;
-        RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE);
-        float *ends = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                              RTC_FORMAT_FLOAT4, 4 * sizeof(float), 2 * count);
-        uint32_t *first = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                  RTC_FORMAT_UINT, sizeof(uint32_t), count);
-        if (ends && first) {
-            memcpy(ends, sets[i].ends, 8 * count * sizeof *ends);
-            for (size_t k = 0; k < count; k++)
-                first[k] = (uint32_t)(2 * k);
-        }
+        float *ends = ARENA_ARRAY(embree->arena, float, 8 * count);
+        memcpy(ends, sets[i].ends, 8 * count * sizeof *ends);
+        RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)count);
+        rtcSetGeometryUserData(geometry, ends);
+        rtcSetGeometryBoundsFunction(geometry, cone_bounds, NULL);
+        rtcSetGeometryIntersectFunction(geometry, cone_intersect);
+        rtcSetGeometryOccludedFunction(geometry, cone_occluded);
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(made->scene, geometry, (unsigned)i);
         rtcReleaseGeometry(geometry);

@@ -41,7 +41,7 @@ struct embree_part {
     const void *data; /* for opaque */
 };
 
-/* Everything is copied. positions: vertices_count x 3; triangles: triangles_count x 3. */
+/* Everything is copied, cones into the arena. positions: vertices_count x 3; triangles: triangles_count x 3. */
 struct embree_mesh {
     const float *positions;
     size_t vertices_count;
@@ -60,7 +60,7 @@ void embree_destroy(struct embree *embree); /* NULL is allowed */
 /* Builds a mesh; its number is the count of meshes before. */
 enum status embree_add_mesh(struct embree *embree, const struct embree_mesh *mesh,
                             struct error *error);
-/* Frusta of cones with flat ends: round curves, whose normals are exact everywhere. */
+/* Frusta of cones with flat ends: round, their normals exact everywhere. */
 struct embree_cones {
     const float *ends; /* cones_count x 2 x 4: x, y, z, radius */
     size_t cones_count;
