@@ -10,7 +10,8 @@ static void make_terrain(struct arena *arena, struct scene *scene, uint32_t samp
                          float height_m)
 {
     struct terrain *terrain = &scene->terrain;
-    *terrain = (struct terrain){samples, samples, size_m, size_m, NULL, NULL, {0.4f, 0.3f, 0.2f}};
+    *terrain =
+        (struct terrain){samples, samples, size_m, size_m, NULL, NULL, {0.4f, 0.3f, 0.2f}, NULL};
     terrain->heights_m = ARENA_ARRAY(arena, float, samples *samples);
     terrain->normals = arena_alloc(arena, samples * samples, sizeof *terrain->normals);
     for (uint32_t j = 0; j < samples; j++)
@@ -52,6 +53,10 @@ static bool expected(const struct scene *scene, const struct view *view, const s
                        hit.q * mesh->normals[corners[2]][axis];
         length += normal[axis] * normal[axis];
         albedo[axis] = scene->terrain.albedo[axis];
+        if (scene->terrain.colors)
+            albedo[axis] *= (1 - hit.p - hit.q) * scene->terrain.colors[corners[0]][axis] +
+                            hit.p * scene->terrain.colors[corners[1]][axis] +
+                            hit.q * scene->terrain.colors[corners[2]][axis];
     }
     for (int axis = 0; axis < 3; axis++)
         normal[axis] /= sqrt(length);
@@ -138,6 +143,61 @@ static void test_backdrop__hills_are_where_rays_meet_them_and_lit_as_defined(voi
         if (wrong > 2 || terrain < 100)
             fail_msg("view %d: %zu of %zu terrain pixels differ", i, wrong, terrain);
     }
+    arena_destroy(arena);
+}
+
+/* Each vertex of another colour. */
+static void paint_terrain(struct arena *arena, struct terrain *terrain)
+{
+    size_t count = (size_t)terrain->samples_x * terrain->samples_z;
+    terrain->colors = arena_alloc(arena, count, sizeof *terrain->colors);
+    for (size_t k = 0; k < count; k++)
+        for (size_t c = 0; c < 3; c++)
+            terrain->colors[k][c] = (float)((7 * k + 31 * c + k * c) % 97) / 96;
+}
+
+static void test_backdrop__colours_multiply_the_albedo_of_hills_and_of_a_plane(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    static const float eyes[3][3] = {{0, 12, 40}, {10, -40, 0}, {-70, 60, -60}};
+    static const float targets[3][3] = {{0, 8, -50}, {0, 10, -20}, {20, 0, 20}};
+    for (int i = 0; i < 9; i++) {
+        struct scene *scene = scene_by_hand(arena, WIDTH, HEIGHT);
+        make_terrain(arena, scene, 21, 200, (float[3]){6, 1, 0}[i / 3]); /* 1: smooth */
+        paint_terrain(arena, &scene->terrain);
+        size_t terrain;
+        size_t wrong = differences(arena, scene, eyes[i % 3], targets[i % 3], EFFECTS, &terrain);
+        if (wrong > 2 || terrain < 100)
+            fail_msg("view %d: %zu of %zu terrain pixels differ", i, wrong, terrain);
+    }
+    arena_destroy(arena);
+}
+
+/* Where relief takes the sun there is none left, of any colour: what is taken has the place's
+ * albedo. */
+static void test_backdrop__coloured_ground_in_shade_is_black_and_never_darker(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct scene *scene = scene_by_hand(arena, WIDTH, HEIGHT);
+    make_terrain(arena, scene, 50, 200, 12);
+    paint_terrain(arena, &scene->terrain);
+    scene->sun.elevation_rad = scene->sun.end_elevation_rad = 0.1f;
+    struct view view;
+    view_look_at(scene, (float[3]){0, 80, 90}, (float[3]){0, 0, 0}, &view);
+    struct setting setting = {
+        .method = "ray-texels", .effects = EFFECT_SUN_SHADOWS, .format = TARGET_RGBA32F};
+    struct picture picture = picture_draw(arena, scene, &view, &setting);
+    size_t black = 0, bright = 0;
+    for (size_t k = 0; k < WIDTH * HEIGHT; k++) {
+        const float *rgba = picture.rgba + 4 * k;
+        for (int c = 0; c < 3; c++)
+            assert_true(rgba[c] > -1e-6f);
+        black += rgba[0] + rgba[1] + rgba[2] < 1e-6f;
+        bright += rgba[0] + rgba[1] + rgba[2] > 1e-3f;
+    }
+    assert_true(black > 200 && bright > 200);
     arena_destroy(arena);
 }
 
@@ -248,6 +308,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_backdrop__the_sky_is_sky_radiance_at_every_pixel_centre),
         cmocka_unit_test(test_backdrop__hills_are_where_rays_meet_them_and_lit_as_defined),
+        cmocka_unit_test(test_backdrop__colours_multiply_the_albedo_of_hills_and_of_a_plane),
+        cmocka_unit_test(test_backdrop__coloured_ground_in_shade_is_black_and_never_darker),
         cmocka_unit_test(test_backdrop__effects_that_are_off_are_off),
         cmocka_unit_test(test_backdrop__the_horizon_of_a_plane_is_mixed_by_area),
     };

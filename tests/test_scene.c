@@ -192,9 +192,25 @@ static const struct {
      "plants[0].options: value is 'height=3'; allowed: with a generator only"},
     {"{\"plants\":[{\"generator\":\"lsystem\"}]," GRID "," CAMERA "}",
      "plants[0].file: is missing; allowed: a grammar's file"},
-    {"{" PLANTS "," GRID "," CAMERA ",\"terrain\":{\"size_m\":[99,99],\"relief\":{\"level\":23,"
+    {"{" PLANTS "," GRID "," CAMERA ",\"terrain\":{\"size_m\":[99,99],\"relief\":{\"level\":27,"
      "\"spike_m\":1}}}",
-     "terrain.relief.level: value is 23; allowed: 1..22"},
+     "terrain.relief.level: value is 27; allowed: 1..26"},
+    {SCENE_WITH(",\"terrain\":{\"size_m\":[500,500],\"image\":\"x.png\",\"height_m\":1,"
+                "\"perlin\":{\"height_m\":1,\"period_m\":9}}"),
+     "terrain.perlin: stands beside an image; allowed: one of them"},
+    {SCENE_WITH(",\"terrain\":{\"size_m\":[500,500],\"perlin\":{\"height_m\":1}}"),
+     "terrain.perlin.period_m: is missing"},
+    {SCENE_WITH(",\"terrain\":{\"size_m\":[500,500],\"perlin\":{\"height_m\":1,\"period_m\":9,"
+                "\"samples\":[1,9]}}"),
+     "terrain.perlin.samples[0]: value is 1; allowed: 2..8193"},
+    {SCENE_WITH(",\"terrain\":{\"size_m\":[500,500],\"color\":\"none.png\"}"),
+     "scene.json: terrain.color: "},
+    {"{" PLANTS ",\"placement\":{\"kind\":\"grid\",\"spacing_m\":5,\"slope_max_deg\":9}," CAMERA
+     "}",
+     "placement.slope_max_deg: means nothing without a terrain"},
+    {"{" PLANTS ",\"placement\":{\"kind\":\"grid\",\"spacing_m\":5,\"heights_m\":[3,2]}," CAMERA
+     ",\"terrain\":{\"size_m\":[500,500]}}",
+     "placement.heights_m: value is [3, 2]; allowed: the lower one first"},
     {"{\"plants\":[{\"generator\":\"poplar\",\"import\":{}}]," GRID "," CAMERA "}",
      "plants[0].import: stands without a file"},
     {"{\"plants\":[{\"generator\":\"poplar\",\"scale\":[2,1]}]," GRID "," CAMERA "}",
@@ -491,6 +507,11 @@ static const struct place places[] = {
      PLANTS "," GRID ",\"terrain\":{\"size_m\":[99,99],\"relief\":",
      "}",
      {{"level", "5"}, {"spike_m", "3"}}},
+    {"`terrain`",
+     "perlin",
+     PLANTS "," GRID ",\"terrain\":{\"size_m\":[99,99],\"perlin\":",
+     "}",
+     {{"height_m", "5"}, {"period_m", "3"}}},
     {"`terrain`", NULL, PLANTS "," GRID ",\"terrain\":", "", {{"size_m", "[99,99]"}}},
     {"`camera`",
      "keys[]",

@@ -57,6 +57,8 @@ static void test_terrain__a_plane_is_exact_everywhere(void **state)
     for (int k = 0; k < 2000; k++) {
         float x = 40 * (random_float(&random) - 0.5f), z = 30 * (random_float(&random) - 0.5f);
         assert_float_equal(terrain_height(&terrain, x, z), plane(x, z), 2e-5);
+        assert_float_equal(terrain_slope_deg(&terrain, x, z), atan(sqrt(0.3125)) * 180 / acos(-1),
+                           1e-3);
     }
     double length = sqrt(1 + 0.25 * 0.25 + 0.5 * 0.5);
     for (int k = 0; k < 45; k++) {
@@ -254,7 +256,7 @@ static void test_terrain__what_is_no_image_is_refused_by_name(void **state)
     assert_int_equal(file_write(description.ground.image, "P2 1 4 9\n1 2 3 4\n", 17, NULL),
                      STATUS_OK);
     assert_int_equal(terrain_build(arena, &description, &terrain, &error), STATUS_INVALID);
-    assert_non_null(strstr(error.text, "is 1 x 4 px; allowed: 2..4097"));
+    assert_non_null(strstr(error.text, "is 1 x 4 px; allowed: 2..8193"));
     description.ground.image = folder;
     assert_int_not_equal(terrain_build(arena, &description, &terrain, &error), STATUS_OK);
     arena_destroy(arena);

@@ -111,12 +111,14 @@ static enum status prepare_programs(struct workspace *workspace, const struct sc
                                     struct backdrop *backdrop)
 {
     bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
-    enum status status = gl_program(workspace->gl, "terrain", backdrop_glsl, fog ? "FOG 1" : NULL,
+    const char *plain = arena_printf(workspace->arena, "%s%s", fog ? "FOG 1\n" : "",
+                                     scene->terrain.colors ? "COLORS 1\n" : "");
+    const char *smooth = arena_printf(workspace->arena, "%sSMOOTH 1\n", plain);
+    enum status status = gl_program(workspace->gl, "terrain", backdrop_glsl, plain,
                                     &backdrop->terrain_program, workspace->error);
     if (status == STATUS_OK && is_smooth(&scene->terrain))
-        status = gl_program(workspace->gl, "smooth terrain", backdrop_glsl,
-                            fog ? "FOG 1\nSMOOTH 1" : "SMOOTH 1", &backdrop->smooth_program,
-                            workspace->error);
+        status = gl_program(workspace->gl, "smooth terrain", backdrop_glsl, smooth,
+                            &backdrop->smooth_program, workspace->error);
     return status;
 }
 
@@ -138,8 +140,10 @@ static enum status prepare_terrain(struct workspace *workspace, const struct sce
     GLuint normals = gl_buffer(gl, (GLsizeiptr)plane, mesh->normals, 0);
     GLuint elements = gl_buffer(gl, (GLsizeiptr)(filled * sizeof *indices), indices, 0);
     GLuint array = backdrop->terrain_vertices = gl_vertex_array(gl);
-    GLuint planes[2] = {positions, normals};
-    for (GLuint i = 0; i < 2; i++) {
+    GLuint planes[3] = {positions, normals, 0};
+    if (mesh->colors)
+        planes[2] = gl_buffer(gl, (GLsizeiptr)plane, mesh->colors, 0);
+    for (GLuint i = 0; i < (mesh->colors ? 3 : 2); i++) {
         gl->VertexArrayVertexBuffer(array, i, planes[i], 0, sizeof *mesh->positions);
         gl->VertexArrayAttribFormat(array, i, 3, GL_FLOAT, GL_FALSE, 0);
         gl->VertexArrayAttribBinding(array, i, i);

@@ -1,5 +1,5 @@
 // Sky and terrain. SKY: one triangle over the picture; else the terrain's mesh. SMOOTH: seen from above, and bent so
-// little that N.L may be interpolated instead of N. FOG: with fog.
+// little that N.L may be interpolated instead of N. FOG: with fog. COLORS: of each vertex.
 #pragma stage vertex
 #ifdef SKY
 uniform vec3 corner_rays[3];  // directions through (-1,-1), (3,-1), (-1,3) in clip space, not unit
@@ -14,6 +14,10 @@ void main()
 #else
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+#ifdef COLORS
+layout(location = 2) in vec3 color_in;
+out vec3 tint;
+#endif
 #ifdef FOG
 out vec3 position_m;
 #endif
@@ -25,6 +29,9 @@ out vec3 shading_normal;
 
 void main()
 {
+#ifdef COLORS
+    tint = color_in;
+#endif
 #ifdef FOG
     position_m = position;
 #endif
@@ -52,6 +59,9 @@ void main()
 }
 #else
 uniform vec3 albedo;
+#ifdef COLORS
+in vec3 tint;
+#endif
 #ifdef FOG
 in vec3 position_m;
 #endif
@@ -68,6 +78,9 @@ void main()
     vec3 radiance = in_shade + in_sun * max(0.0, cosine);
 #else
     vec3 radiance = shade_bark(albedo, shading_normal, gl_FrontFacing);
+#endif
+#ifdef COLORS
+    radiance *= tint;
 #endif
 #ifdef FOG
     radiance = shade_fog(radiance, position_m);

@@ -159,6 +159,7 @@ struct facet {
     double planes[3][3];
     double volume; /* positive where the front is seen */
     const float *normals[3];
+    const float *colors[3]; /* NULL: all of one */
 };
 
 static bool facet_of(const struct mesh *mesh, const uint32_t corners[3], const float eye_m[3],
@@ -167,6 +168,7 @@ static bool facet_of(const struct mesh *mesh, const uint32_t corners[3], const f
     double p[3][3];
     for (int k = 0; k < 3; k++) {
         facet->normals[k] = mesh->normals[corners[k]];
+        facet->colors[k] = mesh->colors ? mesh->colors[corners[k]] : NULL;
         for (int i = 0; i < 3; i++)
             p[k][i] = (double)mesh->positions[corners[k]][i] - eye_m[i];
     }
@@ -199,6 +201,9 @@ static float facet_light(const struct facet *facet, const float weights[3],
     cosine = cosine > 0 ? cosine / sqrtf(length) : 0;
     for (int i = 0; i < 3; i++)
         rgb[i] = light->in_sun[i] * cosine + light->in_shade[i];
+    for (int i = 0; i < 3 && facet->colors[0]; i++)
+        rgb[i] *= weights[0] * facet->colors[0][i] + weights[1] * facet->colors[1][i] +
+                  weights[2] * facet->colors[2][i];
     return cosine;
 }
 

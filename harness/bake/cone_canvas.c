@@ -255,8 +255,10 @@ static void layer_shade(const struct cone_canvas *canvas, size_t pixel, float de
             canvas->eye_m[i] + depth_m * (canvas->rays.first[i] + x * canvas->rays.right[i] +
                                           y * canvas->rays.down[i]);
     float dark = (1 - cone_lights_at(canvas->lights, place_m)) * sun;
+    float albedo[3];
+    terrain_albedo(&canvas->scene->terrain, place_m[0], place_m[2], albedo);
     for (int c = 0; c < 3; c++)
-        rgb[c] -= dark * canvas->scene->terrain.albedo[c] * canvas->scene->sun.radiance[c];
+        rgb[c] -= dark * albedo[c] * canvas->scene->sun.radiance[c];
 }
 
 /* Sums what is left of a pixel's layers; returns how much is. */

@@ -13,6 +13,8 @@ struct horizon {
 bool horizon_is_flat(const struct terrain *terrain)
 {
     size_t count = (size_t)terrain->samples_x * terrain->samples_z;
+    if (terrain->colors)
+        return false;
     for (size_t i = 0; i < count; i++)
         if (terrain->heights_m[i] != terrain->heights_m[0] || terrain->normals[i][1] != 1)
             return false;

@@ -7,7 +7,7 @@
 
 struct horizon;
 
-/* Every height and normal is the same: its borders are all that it shows of a horizon. */
+/* Every height, normal and colour is the same: its borders are all that it shows of a horizon. */
 bool horizon_is_flat(const struct terrain *terrain);
 
 /* The borders of a flat terrain that are before an eye above it. Returns how many. ends: two of

@@ -58,8 +58,10 @@ void canvas_shade(struct canvas *canvas, const struct march_view *picture)
                                             (float)(tile->x_px + column) * picture->rays.right[i] +
                                             (float)(tile->y_px + row) * picture->rays.down[i]);
             float dark = (1 - march_shadows_at(picture->shadows, place_m)) * canvas->suns[at];
+            float albedo[3];
+            terrain_albedo(&scene->terrain, place_m[0], place_m[2], albedo);
             for (int c = 0; c < 3; c++)
-                canvas->rgb[at][c] -= dark * scene->terrain.albedo[c] * scene->sun.radiance[c];
+                canvas->rgb[at][c] -= dark * albedo[c] * scene->sun.radiance[c];
         }
 }
 

@@ -9,6 +9,9 @@
 /* A path beside scene.json, or an absolute one. */
 const char *describe_path(struct arena *arena, const char *scene_path, const char *path);
 
+/* A key that only another kind knows would silently do nothing: an error where it stands. */
+void describe_refuse(struct json *object, const char *key, const char *kinds);
+
 void describe_plants(struct arena *arena, struct json *root, struct description *description);
 void describe_placement(struct arena *arena, struct json *root, struct description *description);
 void describe_ground(struct arena *arena, struct json *root, struct description *description);

@@ -1,10 +1,7 @@
-/* scene.json: plants, placement, terrain. */
+/* scene.json: plants and placement. */
 #include "scene/describe.h"
-#include "scene/relief.h"
 
 #include <string.h>
-
-static const double REQUIRED = (double)NAN;
 
 static const float *describe_albedo(struct arena *arena, struct json *object, const char *key)
 {
@@ -122,11 +119,26 @@ static void describe_square(struct json *object, struct placement *placement)
                                           : "is missing, and so is extent_m");
 }
 
-/* A key that only another kind of placement knows would silently do nothing. */
-static void refuse_key(struct json *object, const char *key, const char *kinds)
+/* Where trees may stand. */
+static void describe_bounds(struct json *root, struct json *object, struct placement *placement)
 {
-    if (json_has(object, key))
-        json_fail(object, key, "means nothing to this kind; allowed: with %s", kinds);
+    static const char *const keys[2] = {"slope_max_deg", "heights_m"};
+    float heights_m[2] = {-HEIGHT_M_MAX, HEIGHT_M_MAX};
+    placement->slope_max_deg = json_number(object, keys[0], 90, 0, 90);
+    json_vector(object, keys[1], heights_m, 2, -HEIGHT_M_MAX, HEIGHT_M_MAX);
+    for (int k = 0; k < 2; k++) {
+        placement->heights_m[k] = (double)heights_m[k];
+        if (!json_has(object, keys[k]))
+            continue;
+        placement->bounded = true;
+        if (placement->kind == PLACEMENT_FILE)
+            describe_refuse(object, keys[k], "grid|poisson");
+        if (!json_has(root, "terrain"))
+            json_fail(object, keys[k], "means nothing without a terrain; allowed: beside one");
+    }
+    if (heights_m[0] > heights_m[1])
+        json_fail(object, keys[1], "value is [%g, %g]; allowed: the lower one first",
+                  (double)heights_m[0], (double)heights_m[1]);
 }
 
 void describe_placement(struct arena *arena, struct json *root, struct description *description)
@@ -145,48 +157,16 @@ void describe_placement(struct arena *arena, struct json *root, struct descripti
     placement->rotate = json_bool(object, "rotate", true);
     placement->file = describe_path(arena, description->path, json_text(object, "file", NULL));
     if (placement->kind != PLACEMENT_GRID)
-        refuse_key(object, "jitter", "grid");
+        describe_refuse(object, "jitter", "grid");
     if (placement->kind != PLACEMENT_POISSON)
-        refuse_key(object, "min_distance_m", "poisson");
+        describe_refuse(object, "min_distance_m", "poisson");
+    describe_bounds(root, object, placement);
     if (placement->kind == PLACEMENT_FILE) {
-        refuse_key(object, "spacing_m", "grid|poisson");
-        refuse_key(object, "clearing_m", "grid|poisson");
+        describe_refuse(object, "spacing_m", "grid|poisson");
+        describe_refuse(object, "clearing_m", "grid|poisson");
         if (!placement->file)
             json_fail(object, "file", "is missing; allowed: a file of positions");
     } else {
-        refuse_key(object, "file", "file");
+        describe_refuse(object, "file", "file");
     }
-}
-
-static void describe_relief(struct json *terrain, struct ground *ground)
-{
-    struct json *relief = json_object(terrain, "relief");
-    if (!relief)
-        return;
-    ground->level = (int)json_integer(relief, "level", 0, 1, RELIEF_LEVEL_MAX);
-    ground->spike_m = json_number(relief, "spike_m", REQUIRED, 0, 10000);
-    ground->seed = (uint64_t)json_integer(relief, "seed", 1, 0, 1000000);
-    if (ground->image)
-        json_fail(terrain, "relief", "stands beside an image; allowed: one of them");
-}
-
-void describe_ground(struct arena *arena, struct json *root, struct description *description)
-{
-    struct ground *ground = &description->ground;
-    struct json *terrain = json_object(root, "terrain");
-    if (!terrain)
-        return;
-    float size_m[2] = {0, 0}, albedo[3] = {0.06f, 0.08f, 0.032f};
-    ground->given = true;
-    if (!json_vector(terrain, "size_m", size_m, 2, 1, 1e6))
-        json_fail(terrain, "size_m", "is missing; allowed: [x, z] in 1..1e6");
-    ground->size_m[0] = size_m[0];
-    ground->size_m[1] = size_m[1];
-    ground->image = describe_path(arena, description->path, json_text(terrain, "image", NULL));
-    ground->height_m = json_number(terrain, "height_m", ground->image ? REQUIRED : 0, 0, 10000);
-    if (!ground->image)
-        refuse_key(terrain, "height_m", "an image");
-    describe_relief(terrain, ground);
-    json_vector(terrain, "albedo", albedo, 3, 0, 1);
-    memcpy(ground->albedo, albedo, sizeof albedo);
 }

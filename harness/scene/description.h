@@ -4,13 +4,17 @@
 #define TREELINE_SCENE_DESCRIPTION_H
 
 #include "plant/coloring.h"
+#include "scene/relief.h"
 #include "scene/scene.h"
 
-enum { TREES_MAX = 4000000, SIDE_PX_MAX = 16384, TERRAIN_SAMPLES_MAX = 4097 };
+enum { TREES_MAX = 4000000, SIDE_PX_MAX = 16384, TERRAIN_SAMPLES_MAX = 8193 };
 
 /* Beyond a factor of eight a tree is a blade or a disc, and a float's normals are short of bits. */
 #define STRETCH_MIN 0.125
 #define STRETCH_MAX 8.0
+
+/* Of any ground, up and down: beyond are no mountains but marks of missing data. */
+#define HEIGHT_M_MAX 20000.0
 
 struct plant_entry {
     const char *name;
@@ -34,17 +38,24 @@ struct placement {
     double clearing_m;     /* no tree's foot nearer to the origin */
     bool rotate;           /* each tree is turned by a random angle */
     const char *file;      /* positions */
+    bool bounded;          /* trees stand where what follows allows them */
+    double slope_max_deg;
+    double heights_m[2];           /* of the ground: the least and the most */
+    const struct terrain *terrain; /* where bounded; terrain_build() comes before */
 };
 
 struct ground {
     bool given;
     double size_m[2];  /* along x and z */
-    const char *image; /* path; NULL: flat or a relief */
-    double height_m;   /* of a white texel; black is 0 */
+    const char *image; /* path; NULL: flat, a relief or noise */
+    double height_m;   /* of a white texel, black is 0; or of 1 in floats and signed integers */
     int level;         /* of a fractal relief (scene/relief.h); 0: none */
     double spike_m;    /* its first displacement at most */
     uint64_t seed;
+    struct relief_noise noise; /* samples 0: none */
+    const char *color;         /* path; NULL: albedo everywhere */
     float albedo[3];
+    float detail_px; /* of levels of detail: how far they may move a picture; 0: every triangle */
 };
 
 struct description {

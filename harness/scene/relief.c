@@ -3,6 +3,7 @@
 #include "scene/relief.h"
 
 #include "base/random.h"
+#include "plant/noise.h"
 
 #include <stddef.h>
 
@@ -36,5 +37,20 @@ float *relief_heights(struct arena *arena, int level, double spike, uint64_t see
         cut(heights, samples, axis, stride, spike * (level - k) / level, &random);
         stride[axis] /= 2;
     }
+    return heights;
+}
+
+float *relief_perlin(struct arena *arena, const struct relief_noise *noise, const double size_m[2])
+{
+    const uint32_t *samples = noise->samples;
+    float *heights = ARENA_ARRAY(arena, float, (size_t)samples[0] * samples[1]);
+    for (uint32_t z = 0; z < samples[1]; z++)
+        for (uint32_t x = 0; x < samples[0]; x++) {
+            double at[2] = {(double)x / (samples[0] - 1) - 0.5, (double)z / (samples[1] - 1) - 0.5};
+            struct vec place = {at[0] * size_m[0] / noise->period_m, 0.5,
+                                at[1] * size_m[1] / noise->period_m};
+            double value = noise_octaves(noise->seed, place, noise->octaves, noise->gain);
+            heights[(size_t)z * samples[0] + x] = (float)(noise->height_m * value);
+        }
     return heights;
 }

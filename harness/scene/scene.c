@@ -208,6 +208,8 @@ static enum status hash_build(struct scene *scene, struct error *error)
     hash = hash_double(hash, terrain->size_z_m);
     hash = hash_floats(hash, terrain->albedo, 3);
     hash = hash_bytes(hash, terrain->heights_m, samples * sizeof(float));
+    if (terrain->colors)
+        hash = hash_bytes(hash, terrain->colors, samples * sizeof *terrain->colors);
     hash = hash_u64(hash, scene->species_count);
     for (size_t k = 0; k < scene->species_count; k++) {
         uint64_t plant = 0;
@@ -242,6 +244,7 @@ enum status scene_load(struct arena *arena, const char *name, const struct scene
     memcpy(made->origin_m, description.origin_m, sizeof made->origin_m);
     memcpy(made->ambient, description.ambient, sizeof made->ambient);
     status = terrain_build(arena, &description, &made->terrain, error);
+    description.placement.terrain = &made->terrain;
     if (status == STATUS_OK)
         status = forest_build(arena, &description, trees_count, request->seed, made, error);
     if (status == STATUS_OK)

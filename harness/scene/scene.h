@@ -41,6 +41,7 @@ struct terrain {
     float *heights_m;    /* samples_z x samples_x */
     float (*normals)[3]; /* samples_z x samples_x, unit, central differences on both axes */
     float albedo[3];
+    float (*colors)[3]; /* samples_z x samples_x, linear; times albedo. NULL: 1 everywhere */
 };
 
 struct sun {
@@ -177,6 +178,10 @@ static inline void sky_radiance(const struct sky *sky, const float direction[3],
 
 /* Height of the triangulated terrain at (x, z), clamped to its border; 0 without terrain. */
 float terrain_height(const struct terrain *terrain, float x_m, float z_m);
+/* The albedo of the triangulated terrain at (x, z), clamped to its border. */
+void terrain_albedo(const struct terrain *terrain, float x_m, float z_m, float albedo[3]);
+/* Degrees of the triangle at (x, z) against the horizon; 0 without terrain. */
+float terrain_slope_deg(const struct terrain *terrain, float x_m, float z_m);
 /* The terrain as a mesh with one MATERIAL_BARK material; NULL without terrain. */
 struct mesh *terrain_mesh(struct arena *arena, const struct terrain *terrain);
 

@@ -2,95 +2,68 @@
  * and its height. */
 #include "scene/terrain.h"
 
-#include "base/file.h"
-#include "base/hash.h"
 #include "scene/relief.h"
-#include "wall/image.h"
+#include "scene/terrain_image.h"
 
 #include <string.h>
 
-/* Heights as the cache keeps them: [0, 1], row 0 at the smallest z. */
-struct height_image {
-    uint32_t width, height;
-    float *values;
-};
-
-static enum status height_check(const char *path, uint64_t width, uint64_t height,
-                                struct error *error)
+/* Heights of an image, m. */
+static enum status heights_read(struct arena *arena, const struct description *description,
+                                struct terrain *terrain, struct error *error)
 {
-    if (width >= 2 && height >= 2 && width <= TERRAIN_SAMPLES_MAX && height <= TERRAIN_SAMPLES_MAX)
-        return STATUS_OK;
-    return error_set(error, STATUS_INVALID,
-                     "%s: the height image is %llu x %llu px; allowed: 2..%d on each side", path,
-                     (unsigned long long)width, (unsigned long long)height, TERRAIN_SAMPLES_MAX);
-}
-
-static bool height_from_cache(struct arena *arena, uint64_t hash, struct height_image *heights)
-{
-    void *data = NULL;
-    size_t size = 0;
-    if (!cache_get(arena, "terrain", hash, &data, &size) || size < 2 * sizeof(uint32_t))
-        return false;
-    uint32_t sides[2];
-    memcpy(sides, data, sizeof sides);
-    if (size != sizeof sides + (size_t)sides[0] * sides[1] * sizeof(float) ||
-        height_check("", sides[0], sides[1], NULL) != STATUS_OK)
-        return false;
-    heights->width = sides[0];
-    heights->height = sides[1];
-    heights->values = (float *)(void *)((char *)data + sizeof sides);
-    return true;
-}
-
-static void height_to_cache(struct arena *arena, uint64_t hash, const struct height_image *heights)
-{
-    uint32_t sides[2] = {heights->width, heights->height};
-    size_t values_bytes = (size_t)sides[0] * sides[1] * sizeof(float);
-    char *data = arena_alloc(arena, 1, sizeof sides + values_bytes);
-    memcpy(data, sides, sizeof sides);
-    memcpy(data + sizeof sides, heights->values, values_bytes);
-    cache_put("terrain", hash, data, sizeof sides + values_bytes);
-}
-
-static enum status height_decode(struct arena *arena, const char *path,
-                                 struct height_image *heights, struct error *error)
-{
-    struct image *image = NULL;
-    enum status status = image_read(arena, path, false, &image, error);
+    const struct ground *ground = &description->ground;
+    struct terrain_image image;
+    enum status status = terrain_image_heights(arena, ground->image, &image, error);
     if (status != STATUS_OK)
-        return status;
-    status = height_check(path, (uint64_t)image->width_px, (uint64_t)image->height_px, error);
-    if (status != STATUS_OK)
-        return status;
-    heights->width = (uint32_t)image->width_px;
-    heights->height = (uint32_t)image->height_px;
-    size_t count = (size_t)heights->width * heights->height;
-    heights->values = ARENA_ARRAY(arena, float, count);
-    for (size_t i = 0; i < count; i++) {
-        float value = image->values[i * (size_t)image->channels_count];
-        if (!(value >= 0 && value <= 1))
+        return error_context(error, "%s: terrain.image", description->path);
+    terrain->samples_x = image.width;
+    terrain->samples_z = image.height;
+    terrain->heights_m = image.values;
+    for (size_t i = 0; i < (size_t)image.width * image.height; i++) {
+        double height_m = (double)image.values[i] * ground->height_m;
+        if (!(fabs(height_m) <= HEIGHT_M_MAX))
             return error_set(error, STATUS_INVALID,
-                             "%s: the height at pixel (%zu, %zu) is %g; allowed: 0..1", path,
-                             i % heights->width, i / heights->width, (double)value);
-        heights->values[i] = value;
+                             "%s: terrain.image: %s: the height at pixel (%zu, %zu) is %g m; "
+                             "allowed: -%g..%g",
+                             description->path, ground->image, i % image.width, i / image.width,
+                             height_m, HEIGHT_M_MAX, HEIGHT_M_MAX);
+        terrain->heights_m[i] = (float)height_m;
     }
     return STATUS_OK;
 }
 
-static enum status height_read(struct arena *arena, const char *path, struct height_image *heights,
-                               struct error *error)
+static enum status heights_make(struct arena *arena, const struct description *description,
+                                struct terrain *terrain, struct error *error)
 {
-    char *bytes = NULL;
-    size_t size = 0;
-    enum status status = file_read(arena, path, 0, &bytes, &size, error);
-    if (status != STATUS_OK)
-        return status;
-    uint64_t hash = hash_bytes(0, bytes, size);
-    if (height_from_cache(arena, hash, heights))
-        return STATUS_OK;
-    status = height_decode(arena, path, heights, error);
+    const struct ground *ground = &description->ground;
+    uint32_t samples[2] = {2, 2};
+    if (ground->image)
+        return heights_read(arena, description, terrain, error);
+    if (ground->level)
+        terrain->heights_m =
+            relief_heights(arena, ground->level, ground->spike_m, ground->seed, samples);
+    else if (ground->noise.samples[0]) {
+        memcpy(samples, ground->noise.samples, sizeof samples);
+        terrain->heights_m = relief_perlin(arena, &ground->noise, ground->size_m);
+    } else
+        terrain->heights_m = ARENA_ARRAY(arena, float, 4);
+    terrain->samples_x = samples[0];
+    terrain->samples_z = samples[1];
+    return STATUS_OK;
+}
+
+static enum status colors_read(struct arena *arena, const struct description *description,
+                               struct terrain *terrain, struct error *error)
+{
+    struct arena *scratch = arena_create(0);
+    struct terrain_image image;
+    enum status status = terrain_image_colors(scratch, description->ground.color, &image, error);
     if (status == STATUS_OK)
-        height_to_cache(arena, hash, heights);
+        terrain->colors =
+            terrain_image_resample(arena, &image, terrain->samples_x, terrain->samples_z);
+    else
+        error_context(error, "%s: terrain.color", description->path);
+    arena_destroy(scratch);
     return status;
 }
 
@@ -101,32 +74,15 @@ enum status terrain_build(struct arena *arena, const struct description *descrip
     *terrain = (struct terrain){0};
     if (!ground->given)
         return STATUS_OK;
-    struct height_image heights = {2, 2, NULL};
-    double unit_m = ground->height_m;
-    if (ground->level) {
-        uint32_t samples[2];
-        unit_m = 1;
-        heights.values =
-            relief_heights(arena, ground->level, ground->spike_m, ground->seed, samples);
-        heights.width = samples[0];
-        heights.height = samples[1];
-    }
-    if (ground->image) {
-        enum status status = height_read(arena, ground->image, &heights, error);
-        if (status != STATUS_OK)
-            return error_context(error, "%s: terrain.image", description->path);
-    }
-    terrain->samples_x = heights.width;
-    terrain->samples_z = heights.height;
     terrain->size_x_m = (float)ground->size_m[0];
     terrain->size_z_m = (float)ground->size_m[1];
     memcpy(terrain->albedo, ground->albedo, sizeof terrain->albedo);
-    size_t count = (size_t)heights.width * heights.height;
-    terrain->heights_m = ARENA_ARRAY(arena, float, count);
-    for (size_t i = 0; heights.values && i < count; i++)
-        terrain->heights_m[i] = (float)(heights.values[i] * unit_m);
-    terrain_normals(arena, terrain);
-    return STATUS_OK;
+    enum status status = heights_make(arena, description, terrain, error);
+    if (status == STATUS_OK && ground->color)
+        status = colors_read(arena, description, terrain, error);
+    if (status == STATUS_OK)
+        terrain_normals(arena, terrain);
+    return status;
 }
 
 /* dy/dx between the neighbours on one axis; step: their distance in the array, quad_m: side of a
@@ -186,6 +142,41 @@ float terrain_height(const struct terrain *terrain, float x_m, float z_m)
     return (float)(base + v * (far_row[0] - base) + u * (corner - far_row[0]));
 }
 
+void terrain_albedo(const struct terrain *terrain, float x_m, float z_m, float albedo[3])
+{
+    memcpy(albedo, terrain->albedo, sizeof terrain->albedo);
+    if (!terrain->colors)
+        return;
+    double u, v;
+    uint32_t i = quad_of(x_m, terrain->size_x_m, terrain->samples_x, &u);
+    uint32_t j = quad_of(z_m, terrain->size_z_m, terrain->samples_z, &v);
+    const float(*row)[3] = (const float(*)[3])terrain->colors + (size_t)j * terrain->samples_x + i;
+    const float(*next)[3] = row + terrain->samples_x;
+    for (int c = 0; c < 3; c++) {
+        double base = (double)row[0][c], corner = (double)next[1][c];
+        double side = (double)(u >= v ? row[1][c] : next[0][c]);
+        double first = u >= v ? u : v, second = u >= v ? v : u;
+        albedo[c] *= (float)(base + first * (side - base) + second * (corner - side));
+    }
+}
+
+float terrain_slope_deg(const struct terrain *terrain, float x_m, float z_m)
+{
+    if (terrain->samples_x < 2 || terrain->samples_z < 2)
+        return 0;
+    double u, v;
+    uint32_t i = quad_of(x_m, terrain->size_x_m, terrain->samples_x, &u);
+    uint32_t j = quad_of(z_m, terrain->size_z_m, terrain->samples_z, &v);
+    const float *near_row = terrain->heights_m + (size_t)j * terrain->samples_x + i;
+    const float *far_row = near_row + terrain->samples_x;
+    bool east = u >= v;
+    double rise_x_m = (double)(east ? near_row[1] - near_row[0] : far_row[1] - far_row[0]);
+    double rise_z_m = (double)(east ? far_row[1] - near_row[1] : far_row[0] - near_row[0]);
+    double slope_x = rise_x_m / (double)terrain->size_x_m * (terrain->samples_x - 1);
+    double slope_z = rise_z_m / (double)terrain->size_z_m * (terrain->samples_z - 1);
+    return (float)(atan(sqrt(slope_x * slope_x + slope_z * slope_z)) * 57.29577951308232);
+}
+
 /* Two triangles a quad, counter-clockwise from above. */
 static void mesh_triangles(const struct terrain *terrain, uint32_t (*triangles)[3])
 {
@@ -222,6 +213,7 @@ struct mesh *terrain_mesh(struct arena *arena, const struct terrain *terrain)
     mesh->positions = arena_alloc(arena, mesh->vertices_count, sizeof *mesh->positions);
     mesh->normals = arena_alloc(arena, mesh->vertices_count, sizeof *mesh->normals);
     mesh_vertices(terrain, mesh);
+    mesh->colors = terrain->colors;
     mesh->triangles_count = 2 * (size_t)(terrain->samples_x - 1) * (terrain->samples_z - 1);
     mesh->triangles = arena_alloc(arena, mesh->triangles_count, sizeof *mesh->triangles);
     mesh_triangles(terrain, mesh->triangles);

@@ -1,11 +1,12 @@
-/* Terrain: a flat plane, heights from an image or a relief; normals; the surface that everybody draws. */
+/* Terrain: a flat plane, heights from an image or a relief; normals; the surface that everybody
+ * draws. */
 #ifndef TREELINE_SCENE_TERRAIN_H
 #define TREELINE_SCENE_TERRAIN_H
 
 #include "scene/description.h"
 
-/* Builds the terrain that scene.json asks for. The image is decoded once and its heights are kept
- * in the cache under the hash of the file's bytes, so that OpenImageIO is loaded only on a miss. */
+/* Builds the terrain that scene.json asks for. It keeps 16 bytes a sample, 28 with a colour image:
+ * of 8,192 x 8,192 samples 1.1 and 1.9 GB. */
 enum status terrain_build(struct arena *arena, const struct description *description,
                           struct terrain *terrain, struct error *error);
 

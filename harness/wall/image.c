@@ -109,8 +109,8 @@ static void decode_srgb(struct image *image, int alpha)
             }
 }
 
-enum status image_read(struct arena *arena, const char *path, bool linear, struct image **image,
-                       struct error *error)
+static enum status read_picture(struct arena *arena, const char *path, bool linear,
+                                struct image **image, double *unit, struct error *error)
 {
     enum status status = check_readable(path, error);
     if (status)
@@ -134,9 +134,23 @@ enum status image_read(struct arena *arena, const char *path, bool linear, struc
     *image = ARENA_NEW(arena, struct image);
     **image = (struct image){picture.width_px, picture.height_px, picture.channels_count,
                              picture.values, names};
+    *unit = picture.unit;
     if (linear && picture.srgb)
         decode_srgb(*image, picture.alpha);
     return STATUS_OK;
+}
+
+enum status image_read(struct arena *arena, const char *path, bool linear, struct image **image,
+                       struct error *error)
+{
+    double unit;
+    return read_picture(arena, path, linear, image, &unit, error);
+}
+
+enum status image_read_units(struct arena *arena, const char *path, struct image **image,
+                             double *unit, struct error *error)
+{
+    return read_picture(arena, path, false, image, unit, error);
 }
 
 /* Writing */
@@ -202,7 +216,7 @@ static enum status encode_image(struct arena *arena, const char *path, const str
         return error_set(error, STATUS_UNAVAILABLE, "%s: %s", path, shim_error.text);
     const char *const *names = image->names ? image->names : default_names(image->channels_count);
     struct oiio_picture picture = {
-        image->width_px, image->height_px, image->channels_count, NULL, NULL, -1, encode};
+        image->width_px, image->height_px, image->channels_count, NULL, NULL, -1, encode, 0};
     picture.names = arena_alloc(arena, (size_t)picture.channels_count, sizeof *picture.names);
     for (int c = 0; c < picture.channels_count; c++) {
         snprintf(picture.names[c], OIIO_NAME_BYTES, "%s", names[c]);

@@ -27,6 +27,10 @@ struct image {
  * IMAGE_VALUES_MAX is STATUS_INVALID, no shim or OpenImageIO STATUS_UNAVAILABLE. */
 enum status image_read(struct arena *arena, const char *path, bool linear, struct image **image,
                        struct error *error);
+/* The same, as stored. unit: of floats and signed integers (EXR, GeoTIFF) the number in the file
+ * that a value of 1 stands for; 0 of unsigned integers, which are shares of their most. */
+enum status image_read_units(struct arena *arena, const char *path, struct image **image,
+                             double *unit, struct error *error);
 /* STATUS_INVALID unless the path ends in .exr or .png: to be asked before hours of work. */
 enum status image_path_check(const char *path, struct error *error);
 /* By the path's ending, whole or not at all (file_write). .exr: half or float by bits (16, 32),

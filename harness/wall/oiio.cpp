@@ -45,6 +45,25 @@ bool is_srgb(const OIIO::ImageSpec &spec)
     return integers && spec.get_string_attribute("oiio:ColorSpace") != "Linear";
 }
 
+/* 0 of unsigned integers, which are a share of their most; OpenImageIO scales the others too. */
+double unit_of(const OIIO::TypeDesc &format)
+{
+    switch (format.basetype) {
+    case OIIO::TypeDesc::INT8:
+        return 127;
+    case OIIO::TypeDesc::INT16:
+        return 32767;
+    case OIIO::TypeDesc::INT32:
+        return 2147483647;
+    case OIIO::TypeDesc::HALF:
+    case OIIO::TypeDesc::FLOAT:
+    case OIIO::TypeDesc::DOUBLE:
+        return 1;
+    default:
+        return 0;
+    }
+}
+
 void copy_names(const OIIO::ImageSpec &spec, oiio_picture *picture)
 {
     for (int c = 0; c < spec.nchannels; c++) {
@@ -82,6 +101,7 @@ int read_picture(const oiio_context *context, const char *path, uint64_t values_
     picture->channels_count = spec.nchannels;
     picture->alpha = spec.alpha_channel;
     picture->srgb = is_srgb(spec);
+    picture->unit = unit_of(spec.format);
     picture->values = static_cast<float *>(context->allocate(context->user, count * sizeof(float)));
     std::memcpy(picture->values, values.get(), count * sizeof(float));
     picture->names = static_cast<char(*)[OIIO_NAME_BYTES]>(

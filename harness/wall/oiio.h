@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define OIIO_ABI 1
+#define OIIO_ABI 2
 #define OIIO_NAME_BYTES 64
 #define OIIO_CALLS_SYMBOL "treeline_image_calls"
 
@@ -15,6 +15,7 @@ struct oiio_picture {
     char (*names)[OIIO_NAME_BYTES]; /* one a channel */
     int alpha;                      /* index of the alpha channel, or -1 */
     int srgb;                       /* read: the values are sRGB-encoded; write: say so */
+    double unit; /* read: the number in the file that 1 stands for; 0 of unsigned integers */
 };
 
 /* Where memory and messages go. Calls return 0, or 1 with one line in message. */
