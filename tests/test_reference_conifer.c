@@ -76,6 +76,48 @@ static void test_needle__reflects_what_the_closed_form_of_a_cylinder_says(void *
         }
 }
 
+/* The same needle, black: what shines is the mean over its width of (N.H)^n where N.L > 0. */
+static void test_needle__shines_as_the_quadrature_of_its_lobe_says(void **state)
+{
+    (void)state;
+    static const double rows[][3] = {{0, 0.6, 1}, {1, 1, 0.9}, {20, 1.5, 1}, {10000, 0.8, 1}};
+    for (size_t k = 0; k < 4; k++) {
+        struct world world = world_of(0, 0, 1);
+        double n = rows[k][0], angle = rows[k][1], sine = rows[k][2], error, shines = 0;
+        double sun[3] = {sqrt(1 - sine * sine), sine * sin(angle), sine * cos(angle)};
+        struct conifer_twig twig = {.base_m = {-0.5f, 0, 0},
+                                    .axis = {1, 0, 0},
+                                    .length_m = 1e-4f,
+                                    .axis_radius_m = 1e-5f,
+                                    .cones_count = 1,
+                                    .needles_count = 1,
+                                    .needle_length_m = 1,
+                                    .needle_radius_m = 0.03f};
+        struct conifer *conifer = conifer_new(world.arena, &twig, 0);
+        conifer->needle_specular = 0.7f;
+        conifer->needle_exponent = (float)n;
+        world_plant(&world, plant_from_conifer(world.arena, "needle", conifer));
+        world_sun(&world, sun[0], sun[1], sun[2]);
+        for (int i = 0; i < 20000; i++) {
+            double t = M_PI * ((i + 0.5) / 20000 - 0.5), normal[2] = {sin(t), cos(t)};
+            double facing = normal[0] * sun[1] + normal[1] * sun[2];
+            double along = (facing + normal[1]) / sqrt(2 + 2 * sun[2]);
+            shines += facing > 0 ? M_PI / 20000 * cos(t) / 2 * pow(along, n) : 0;
+        }
+        for (unsigned on = 0; on < 2; on++) {
+            struct frame *frame = world_render(
+                &world,
+                (struct reference_options){
+                    .effects = on ? EFFECT_SPECULAR : 0u, .samples_min = 512, .samples_max = 512},
+                NULL);
+            double unit = seen_m * seen_m / 0.7 / (2 * 0.03);
+            double light = frame_mean(frame, 0, &error) * unit;
+            assert_float_equal(light, on ? shines : 0, 4 * error * unit + 5e-3 * shines);
+        }
+        arena_destroy(world.arena);
+    }
+}
+
 /* A cylinder with flat ends covers 2 r l s + pi r^2 |c|, and its end is lit as a plane: seen at 10
  * degrees to the axis, with the sun across the axis, only the side is; a rounded end would be too.
  */
@@ -190,6 +232,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_needle__reflects_what_the_closed_form_of_a_cylinder_says),
+        cmocka_unit_test(test_needle__shines_as_the_quadrature_of_its_lobe_says),
         cmocka_unit_test(test_needle__has_flat_ends),
         cmocka_unit_test(test_twig__of_any_scale_looks_alike_from_as_many_times_as_far),
         cmocka_unit_test(test_twig__of_prisms_converges_to_the_round_one),

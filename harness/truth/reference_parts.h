@@ -22,6 +22,7 @@ struct surface {
     bool flat;   /* the vertices' normals are the triangles' own */
     bool varied; /* the albedo changes within a triangle */
     float albedo[3];
+    float specular, exponent; /* of a needle's lobe; 0: none */
     float (*tints)[3]; /* albedo of each triangle of the part, with the vertices' colour; NULL:
                           albedo */
     const struct texture *texture;

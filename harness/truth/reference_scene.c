@@ -139,6 +139,8 @@ static enum status add_conifer(struct traced_scene *traced, const struct conifer
     for (size_t k = 0; k < conifer_surfaces(conifer); k++) {
         surfaces[k] = (struct surface){.plant = true, .flat = true};
         memcpy(surfaces[k].albedo, albedos[k], sizeof surfaces[k].albedo);
+        surfaces[k].specular = k ? conifer->needle_specular : 0;
+        surfaces[k].exponent = conifer->needle_exponent;
     }
     enum status status = embree_add_cones(traced->embree, sets, conifer_surfaces(conifer), error);
     arena_destroy(scratch);

@@ -238,18 +238,36 @@ static void sky_direction(const float normal[3], const float point[2], float dir
         direction[axis] = x * first[axis] + y * second[axis] + z * normal[axis];
 }
 
-/* white: what a white surface there would add to the picture under light 1. */
+/* (N.H)^n of a lit needle times its weight. */
+static float shine_of(const struct picture *picture, const struct tile_work *work,
+                      const struct sights *sights, int lane)
+{
+    const struct surface *surface = sights->surface[lane];
+    float half[3], square = 0, along = 0;
+    for (int i = 0; i < 3; i++) {
+        half[i] = picture->view->sun_direction[i] - work->packet.direction[i][lane];
+        square += half[i] * half[i];
+        along += half[i] * sights->normal[i][lane];
+    }
+    if (square < 1e-12f || !(along > 0))
+        return 0;
+    return surface->specular * powf(fminf(along / sqrtf(square), 1), surface->exponent);
+}
+
+/* albedo: times how clear the way to the eye is. */
 static void light_sun(const struct picture *picture, struct tile_work *work,
-                      const struct sights *sights, int lane, const float white[3])
+                      const struct sights *sights, int lane, const float albedo[3], float clear)
 {
     float facing = sights->sun_facing[lane];
     if (picture->effects & EFFECT_TWO_SIDED && sights->surface[lane]->leaf)
         facing = fabsf(facing);
     if (!(facing > 0))
         return;
-    float light[3];
+    float light[3], shine = 0;
+    if (picture->effects & EFFECT_SPECULAR && sights->surface[lane]->specular > 0)
+        shine = clear * shine_of(picture, work, sights, lane);
     for (int i = 0; i < 3; i++)
-        light[i] = white[i] * picture->sun[i] * facing;
+        light[i] = (albedo[i] * facing + shine) * picture->sun[i];
     if (picture->effects & EFFECT_SUN_SHADOWS)
         queue_push(&work->sun, sights, lane, picture->view->sun_direction, light, work->slot[lane]);
     else
@@ -293,10 +311,10 @@ static void shade_lane(const struct picture *picture, struct tile_work *work,
                        const struct sights *sights, int lane)
 {
     const struct fog *fog = &picture->traced.scene->fog;
-    float *sum = work->sums[work->slot[lane]], white[3];
+    float *sum = work->sums[work->slot[lane]], white[3], clear = 1;
     surface_albedo(sights->surface[lane], &work->packet, lane, white);
     if (picture->effects & EFFECT_FOG) {
-        float clear = expf(-fog->density_per_m * work->packet.far[lane]);
+        clear = expf(-fog->density_per_m * work->packet.far[lane]);
         for (int i = 0; i < 3; i++) {
             white[i] *= clear;
             sum[i] += (1 - clear) * fog->color[i];
@@ -304,7 +322,7 @@ static void shade_lane(const struct picture *picture, struct tile_work *work,
     }
     sum[3] += sights->surface[lane]->plant ? 1.0f : 0.0f;
     if (picture->sun_shines)
-        light_sun(picture, work, sights, lane, white);
+        light_sun(picture, work, sights, lane, white, clear);
     if (picture->sky_shines)
         light_sky(picture, work, sights, lane, white);
 }
