@@ -5,13 +5,18 @@
 #include "bake/cones_parts.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
+struct work;
 struct cones_naive {
+    struct arena *arena;
     struct cone_bvh *trees;
     struct cone_bvh **items; /* of a species: twigs, then barks */
     size_t items_most, strips_most;
+    struct work *works; /* a thread */
+    int works_count;
 };
 
 /* What a thread needs. Fragments of a pixel: of strips that hide some of it. */
@@ -47,6 +52,7 @@ struct cones_naive *cones_naive_create(struct arena *arena, const struct cones *
 {
     const struct scene *scene = cones->scene;
     struct cones_naive *naive = ARENA_NEW(arena, struct cones_naive);
+    naive->arena = arena;
     struct cone_ball *trees = ARENA_ARRAY(arena, struct cone_ball, scene->instances_count + 1);
     naive->items = ARENA_ARRAY(arena, struct cone_bvh *, scene->species_count + 1);
     for (size_t s = 0; s < scene->species_count; s++) {
@@ -107,20 +113,28 @@ static struct cone_beam beam_in(const struct cone_picture *picture, const struct
     return beam;
 }
 
-static void gather(struct work *work, const struct cone_strip *strips, size_t count, float x_px,
-                   float y_px)
+/* The arena serves one thread at a time. */
+static void fragments_grow(struct arena *arena, struct work *work)
+{
+    const size_t capacity = 2 * work->fragments_capacity + 64;
+    struct cone_strip *more;
+#pragma omp critical(cones_naive_arena)
+    more = ARENA_ARRAY(arena, struct cone_strip, capacity);
+    if (work->count > 0)
+        memcpy(more, work->fragments, work->count * sizeof *more);
+    work->fragments = more;
+    work->fragments_capacity = capacity;
+}
+
+static void gather(struct arena *arena, struct work *work, const struct cone_strip *strips,
+                   size_t count, float x_px, float y_px)
 {
     struct cone_place place;
     for (size_t k = 0; k < count; k++) {
         if (!(cone_strip_hides(&strips[k], x_px, y_px, &place) > 0))
             continue;
-        if (work->count == work->fragments_capacity) {
-            work->fragments_capacity = 2 * work->fragments_capacity + 64;
-            work->fragments =
-                realloc(work->fragments, work->fragments_capacity * sizeof *work->fragments);
-            if (!work->fragments)
-                abort();
-        }
+        if (work->count == work->fragments_capacity)
+            fragments_grow(arena, work);
         work->fragments[work->count++] = strips[k];
     }
 }
@@ -141,7 +155,7 @@ static void tree_meet(const struct cones *cones, const struct cone_picture *pict
             count = cone_twig_emit(picture, &tree, item, &beam, work->strips);
         else if (item >= twigs && (float)(item - twigs) < tree.barks)
             count = cone_bark_emit(picture, &tree, item - twigs, work->strips);
-        gather(work, work->strips, count, x_px, y_px);
+        gather(cones->naive->arena, work, work->strips, count, x_px, y_px);
     }
 }
 
@@ -177,28 +191,36 @@ static void pixel_draw(struct cones *cones, const struct cone_picture *picture, 
     }
 }
 
+static void works_create(const struct cones *cones, int threads)
+{
+    struct cones_naive *naive = cones->naive;
+    if (threads <= naive->works_count)
+        return;
+    naive->works_count = threads;
+    naive->works = ARENA_ARRAY(naive->arena, struct work, threads);
+    for (int k = 0; k < threads; k++) {
+        struct work *work = &naive->works[k];
+        work->trees = ARENA_ARRAY(naive->arena, uint32_t, cones->scene->instances_count + 1);
+        work->items = ARENA_ARRAY(naive->arena, uint32_t, naive->items_most + 1);
+        work->strips = ARENA_ARRAY(naive->arena, struct cone_strip, naive->strips_most + 2);
+    }
+}
+
 uint64_t cones_naive_draw(struct workspace *workspace, struct cones *cones,
                           const struct cone_picture *picture)
 {
-    const struct cones_naive *naive = cones->naive;
+    struct cones_naive *naive = cones->naive;
     const size_t pixels = (size_t)cones->canvas->width_px * (size_t)cones->canvas->height_px;
     uint64_t met = 0;
+    works_create(cones, workspace->threads);
 #pragma omp parallel num_threads(workspace->threads) reduction(+ : met)
     {
-        struct work work = {.count = 0};
-        work.trees = malloc((cones->scene->instances_count + 1) * sizeof *work.trees);
-        work.items = malloc((naive->items_most + 1) * sizeof *work.items);
-        work.strips = malloc((naive->strips_most + 2) * sizeof *work.strips);
-        if (!work.trees || !work.items || !work.strips)
-            abort();
+        struct work *work = &naive->works[omp_get_thread_num()];
+        work->met = 0;
 #pragma omp for schedule(dynamic, 64)
         for (size_t pixel = 0; pixel < pixels; pixel++)
-            pixel_draw(cones, picture, &work, pixel);
-        met += work.met;
-        free(work.trees);
-        free(work.items);
-        free(work.strips);
-        free(work.fragments);
+            pixel_draw(cones, picture, work, pixel);
+        met += work->met;
     }
     return met;
 }
