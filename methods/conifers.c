@@ -2,12 +2,13 @@
  *
  * The paper casts a cone a pixel, finds the trees that it meets, shades needles, cones of needles
  * or twigs by distance, and composes by coverage. Mended here: what its integrals lose
- * (bake/cone_shade.h), the relief, which shares a pixel by depth and a mask (bake/cone_canvas.h),
- * shadows between twigs and trees (bake/cone_light.h), and levels that turn into each other. */
+ * (bake/needles.h; shaders=paper has them as printed), the relief, which shares a pixel by depth
+ * and a mask (bake/cone_canvas.h), shadows between twigs and trees (bake/cone_light.h), and levels
+ * that turn into each other. */
 #include "bake/cones.h"
 
 struct options {
-    int path, level;
+    int path, level, shaders;
     float needle, twig, lim1, lim2, thin, stop;
     bool shadows, edges;
 };
@@ -18,6 +19,8 @@ static const struct option table[] = {
                 "naive: a cone a pixel through bounding hierarchies; fast: all pixels together, the same picture"),
     OPTION_WORD(struct options, level, 0, "auto|needle|cone|twig",
                 "auto: by the length of a needle on the picture, or by lim1 and lim2"),
+    OPTION_WORD(struct options, shaders, 0, "exact|paper",
+                "paper: as it prints them, clamped to what is physical"),
     OPTION(struct options, needle, 6, 0.1, 1000, "px", "needles at least so long are drawn one by one"),
     OPTION(struct options, twig, 2.5, 0.1, 1000, "px", "twigs whose needles are shorter are drawn as wholes"),
     OPTION(struct options, lim1, 0, 0, 1e6, "m", "the paper's: needles one by one up to this distance; 0: by needle"),
@@ -64,6 +67,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
                    .twig_px = options->twig,
                    .limits_m = {options->lim1, options->lim2},
                    .thin = options->thin},
+        .shaders = options->shaders ? CONE_PAPER : CONE_EXACT,
         .is_naive = options->path == 0,
         .shadows = options->shadows,
         .edges = options->edges,
@@ -93,7 +97,8 @@ const struct method conifers_method = {
         "Hattab, Babahenini and Djedi, Un modele pour l'illumination analytique et hierarchique "
         "des coniferes; Meyer and Neyret 2000, Multiscale shaders for the efficient realistic "
         "rendering of pine-trees; Amanatides 1984",
-    .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG,
+    .traits = TRAIT_CPU | EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG |
+              EFFECT_SPECULAR,
     .options = table,
     .options_size = sizeof(struct options),
     .effects = effects,

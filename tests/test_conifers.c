@@ -33,6 +33,8 @@ static struct plant *plant_of(struct arena *arena, const struct conifer_twig *tw
     conifer->needle_sides = 12;
     for (int i = 0; i < 3; i++)
         conifer->needle_albedo[i] = conifer->bark_albedo[i] = 0.5f;
+    conifer->needle_specular = 0.4f;
+    conifer->needle_exponent = 20;
     if (conifer_finish(conifer, &error))
         fail_msg("%s", error.text);
     return plant_from_conifer(arena, "test", conifer);
@@ -146,6 +148,73 @@ static void test_conifers__every_level_of_a_far_twig_covers_and_shines_as_traced
     levels_check(1, 0, 0, 12);
     levels_check(1, 0.5, 0.7, 12);
     levels_check(1, 0.2, -0.5, 20);
+}
+
+/* What the lobe adds, against what it adds to the tracer's picture. */
+static void test_conifers__needles_shine_at_every_level_as_traced(void **state)
+{
+    (void)state;
+    double traced = 0;
+    for (int level = -1; level < CONE_LEVELS; level++) {
+        double light[2];
+        struct world world = world_create(48, 48, 0.05);
+        struct conifer_twig twig = twig_along(1, 0.5, 0.7);
+        plant_add(&world, plant_of(world.arena, &twig, 1));
+        world_look(&world, 0, 0.05f, 12, 0.1f, 0.05f, 0);
+        world_sun(&world, 0.5, 0.7, 1.4);
+        for (unsigned shines = 0; shines < 2; shines++) {
+            const unsigned effects = EFFECT_SUN_SHADOWS | (shines ? EFFECT_SPECULAR : 0u);
+            struct cones_options options = options_of(level);
+            struct reference_options tracer = {
+                .effects = effects, .samples_min = 64, .samples_max = 64, .threads = 2};
+            struct reference_stats stats;
+            light[shines] = sum_of(level < 0 ? world_render(&world, tracer, &stats)
+                                             : drawn(&world, &options, effects, 1),
+                                   0);
+        }
+        traced = level < 0 ? light[1] - light[0] : traced;
+        if (!(fabs((light[1] - light[0]) / traced - 1) < 0.3) || !(traced > 0.1 * light[0]))
+            fail_msg("level %d: shines by %.4f of %.4f, traced %.4f", level, light[1] - light[0],
+                     light[0], traced);
+        arena_destroy(world.arena);
+    }
+}
+
+/* Seen from the side (11) leaves 2 sin phi of a cone's needles, where they are the integral of
+ * their sines; (19) has N r cot phi / dh of a twig opaque. */
+static void test_conifers__as_printed_a_twig_covers_what_the_paper_says(void **state)
+{
+    (void)state;
+    for (int level = CONE_NEEDLE; level < CONE_LEVELS; level++) {
+        double cover[2], pixels_m2 = pow(2 * tan(0.025) * 12 / 48, 2), seen = 0;
+        struct conifer_twig twig = twig_along(1, 0, 0);
+        const double phi = (double)twig.needle_angle_rad;
+        twig.needle_radius_m = 2e-5f;
+        twig.axis_radius_m = 1e-8f;
+        for (int paper = 0; paper < 2; paper++) {
+            struct world world = world_create(48, 48, 0.05);
+            plant_add(&world, plant_of(world.arena, &twig, 1));
+            world_look(&world, 0.12f, 0, 12, 0.12f, 0, 0);
+            world_sun(&world, 0.5, 0.7, 1.4);
+            struct cones_options options = options_of(level);
+            options.shaders = paper ? CONE_PAPER : CONE_EXACT;
+            struct frame *frame = drawn(&world, &options, EFFECT_SUN_SHADOWS | EFFECT_SPECULAR, 1);
+            for (size_t i = 0; i < 48 * 48 * 4; i++)
+                assert_true(frame->rgba[i] >= 0 && frame->rgba[i] <= 1);
+            cover[paper] = sum_of(frame, 3) * pixels_m2;
+            arena_destroy(world.arena);
+        }
+        for (int k = 0; k < 1000; k++) {
+            double c = sin(phi) * cos(2 * M_PI * (k + 0.5) / 1000);
+            seen += 2 * M_PI / 1000 * sqrt(1 - c * c);
+        }
+        const double twig_m2 = 2 * (double)twig.needle_length_m * sin(phi) * 0.24;
+        const double printed[CONE_LEVELS] = {1, 2 * sin(phi) / seen,
+                                             12 * 2e-5 / 0.02 / tan(phi) * twig_m2 / cover[0]};
+        if (!(fabs(cover[1] / cover[0] / printed[level] - 1) < 0.02))
+            fail_msg("level %d: covers %.3f of the exact one, printed %.3f", level,
+                     cover[1] / cover[0], printed[level]);
+    }
 }
 
 static void test_conifers__relief_before_half_a_pixel_leaves_half_to_what_is_behind(void **state)
@@ -300,6 +369,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_conifers__a_needle_across_a_pixel_hides_its_width_of_it),
         cmocka_unit_test(test_conifers__every_level_of_a_far_twig_covers_and_shines_as_traced),
+        cmocka_unit_test(test_conifers__needles_shine_at_every_level_as_traced),
+        cmocka_unit_test(test_conifers__as_printed_a_twig_covers_what_the_paper_says),
         cmocka_unit_test(test_conifers__relief_before_half_a_pixel_leaves_half_to_what_is_behind),
         cmocka_unit_test(test_conifers__levels_turn_into_each_other_without_a_leap),
         cmocka_unit_test(test_conifers__the_fast_way_draws_what_the_straightforward_one_does),

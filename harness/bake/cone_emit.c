@@ -117,7 +117,7 @@ bool cone_strip_place(const struct cone_picture *picture, const struct cone_tree
 }
 
 void cone_strip_color(const struct cone_picture *picture, const struct cone_material *material,
-                      const struct cone_shine *shine, struct cone_strip *strip)
+                      const struct needles_shade *shade, struct cone_strip *strip)
 {
     float clear = 1;
     if (picture->fog_density_per_m > 0) {
@@ -130,13 +130,14 @@ void cone_strip_color(const struct cone_picture *picture, const struct cone_mate
     for (int c = 0; c < 3; c++) {
         strip->shade[c] = clear * material->albedo[c] * picture->ambient[c] +
                           (1 - clear) * picture->scene->fog.color[c];
-        strip->sun[c] = clear * picture->sun[c] *
-                        (material->albedo[c] * shine->diffuse + material->gloss * shine->gloss);
+        strip->sun[c] =
+            clear * picture->sun[c] *
+            (material->albedo[c] * shade->diffuse + material->specular * shade->specular);
     }
 }
 
-void cone_strip_round(const struct cone_tree *tree, const struct cone_rod *rod, bool two_sided,
-                      float mean, struct cone_strip *strip)
+void cone_strip_round(const struct cone_tree *tree, const struct cone_rod *rod, float mean,
+                      struct cone_strip *strip)
 {
     float half = fmaxf(strip->half_px[0], strip->half_px[1]);
     strip->mean = mean;
@@ -164,7 +165,6 @@ void cone_strip_round(const struct cone_tree *tree, const struct cone_rod *rod, 
     float per = (side < 0 ? -1 : 1) / sqrtf(square);
     strip->across = per * dot3(across, tree->sun_camera);
     strip->toward = dot3(eye, tree->sun_camera);
-    strip->two_sided = two_sided;
 }
 
 float cone_opacity_part(float opacity, float share)
@@ -188,7 +188,6 @@ size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree
     const struct cone_plant *plant = tree->plant;
     const struct cone_bark *bark = &plant->barks[index];
     struct cone_rod rod = {.radius_m = {bark->radius_m[0], bark->radius_m[1]}};
-    struct cone_sight sight = {.exponent = 0};
     float axis[3], eye[3], middle_m[3], grown = 1;
     memcpy(rod.ends_m[0], bark->from_m, sizeof rod.ends_m[0]);
     memcpy(rod.ends_m[1], bark->to_m, sizeof rod.ends_m[1]);
@@ -208,8 +207,7 @@ size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree
     }
     for (int i = 0; i < 3; i++) {
         axis[i] /= length;
-        sight.eye[i] = eye[i] / fmaxf(away, 1e-20f);
-        sight.sun[i] = tree->sun[i];
+        eye[i] /= fmaxf(away, 1e-20f);
     }
     rod.radius_m[0] *= grown;
     rod.radius_m[1] *= grown;
@@ -220,9 +218,10 @@ size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree
         for (int end = 0; end < 2; end++)
             strip->beyond_px[end] += joint_px;
     const struct cone_material material = {plant->conifer->bark_albedo, 0};
-    const struct cone_shine white = {1, 0};
+    const struct needles_shade white = {1, 0, 1};
+    const struct needles_sight sight = needles_sight_of(tree->sun, eye, -1, false);
     cone_strip_color(picture, &material, &white, strip);
-    cone_strip_round(tree, &rod, false, cone_needle_shine(axis, &sight).diffuse, strip);
+    cone_strip_round(tree, &rod, needles_reflect(axis, &sight).diffuse, strip);
     if (tree->light.cones) {
         float gain = cone_tree_light_gain(&tree->light, middle_m);
         strip->lit[0] = strip->lit[1] = gain * (float)tree->light.barks[index] / 255;

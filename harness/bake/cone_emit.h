@@ -4,6 +4,7 @@
 #define TREELINE_BAKE_CONE_EMIT_H
 
 #include "bake/cone_light.h"
+#include "bake/cone_shade.h"
 #include "bake/cone_strip.h"
 
 enum cone_level { CONE_NEEDLE, CONE_CONE, CONE_TWIG, CONE_LEVELS };
@@ -25,6 +26,7 @@ struct cone_picture {
     float sun[3], ambient[3]; /* radiance of a white surface */
     float fog_density_per_m;
     struct cone_choice choice;
+    enum cone_shaders shaders;
     struct cone_plant *const *plants;
     const struct cone_lights *lights; /* NULL: the sun has no shadows */
 };

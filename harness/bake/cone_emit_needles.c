@@ -12,13 +12,13 @@ static void needle_light(const struct cone_twig_view *seen, const float azimuth[
                          float lit[2])
 {
     static const float at[2] = {0.15f, 0.9f};
-    const float *sun = seen->sight.sun;
+    const float *sun = seen->sight.light;
     float flat = fmaxf(sqrtf(sun[0] * sun[0] + sun[1] * sun[1]), 1e-9f);
     float toward = (azimuth[0] * sun[0] + azimuth[1] * sun[1]) / flat;
     float aside = (azimuth[1] * sun[0] - azimuth[0] * sun[1]) / flat;
     for (int end = 0; end < 2; end++)
         lit[end] =
-            light * expf(-cone_disc_depth(seen->depths.sun, at[end] * toward, at[end] * aside));
+            light * expf(-needles_disc_shadow(&seen->disc, at[end] * toward, at[end] * aside));
 }
 
 static size_t needle_emit(const struct cone_picture *picture, const struct cone_tree *tree,
@@ -40,15 +40,13 @@ static size_t needle_emit(const struct cone_picture *picture, const struct cone_
     if (!cone_strip_place(picture, tree, &rod, strip))
         return 0;
     const struct cone_material material = {conifer->needle_albedo, conifer->needle_specular};
-    struct cone_shine shine = cone_needle_shine(axis, &seen->plant_sight);
+    const struct needles_shine shine =
+        cone_needle_shine(picture->shaders, axis, &seen->plant_sight);
+    const float diffuse = fmaxf(shine.diffuse, 1e-4f);
+    const struct needles_shade shade = {1, shine.specular / diffuse, 1};
     strip->opacity = cone_opacity_part(1, seen->mix.shares[CONE_NEEDLE]);
-    if (seen->sight.exponent > 0) {
-        cone_strip_color(picture, &material, &shine, strip);
-    } else {
-        const struct cone_shine white = {1, 0};
-        cone_strip_color(picture, &material, &white, strip);
-        cone_strip_round(tree, &rod, seen->sight.two_sided, shine.diffuse, strip);
-    }
+    cone_strip_color(picture, &material, &shade, strip);
+    cone_strip_round(tree, &rod, diffuse, strip);
     return 1;
 }
 
@@ -84,22 +82,15 @@ size_t cone_needles_emit(const struct cone_picture *picture, const struct cone_t
  * sheet. */
 static float outline_of(const struct cone_twig_view *seen)
 {
-    const struct cone_twig *twig = seen->twig;
-    const float *eye = seen->sight.eye, length = twig->twig->needle_length_m;
-    float flat = sqrtf(eye[0] * eye[0] + eye[1] * eye[1]);
-    float p = twig->cosine * flat, k = twig->sine * eye[2];
-    float c = fabsf(twig->cosine) * flat > 1e-9f ? twig->sine * eye[2] / (twig->cosine * flat)
-                                                 : (k > 0 ? 1.0f : -1.0f);
-    c = c > -1 ? c < 1 ? c : 1 : -1;
-    float angle = acosf(c), sine = sqrtf(1 - c * c);
-    float near = fabsf(twig->sine * (p * sine - k * angle));
-    float far = fabsf(twig->sine * (p * sine + k * (PI - angle)));
-    return length * length * fmaxf(near, far);
+    const struct needles_twig shape = cone_twig_shape(seen->twig);
+    float footprints[2];
+    needles_cone_sheets(&shape, seen->sight.eye, footprints);
+    return shape.length_m * shape.length_m * fmaxf(footprints[0], footprints[1]);
 }
 
 /* A trapezium as wide as the rim and as large as the outline. */
 static bool sheet_place(const struct cone_picture *picture, const struct cone_tree *tree,
-                        const struct cone_twig_view *seen, const float apex_m[3],
+                        const struct cone_twig_view *seen, const float apex_m[3], float outline_m2,
                         struct cone_strip *strip)
 {
     const struct cone_twig *twig = seen->twig;
@@ -116,8 +107,8 @@ static bool sheet_place(const struct cone_picture *picture, const struct cone_tr
     if (!cone_strip_place(picture, tree, &rod, strip))
         return false;
     float px = tree->scale * picture->focal_px / strip->depth_m;
-    float wanted_px = grown * grown * px * px * outline_of(seen) /
-                      fmaxf(strip->half_px[0] + strip->half_px[1], 1e-9f);
+    float wanted_px =
+        grown * grown * px * px * outline_m2 / fmaxf(strip->half_px[0] + strip->half_px[1], 1e-9f);
     strip->beyond_px[0] = strip->beyond_px[1] = 0;
     for (int i = 0; i < 2; i++)
         strip->from_px[i] += 0.5f * (strip->length_px - wanted_px) * strip->along[i];
@@ -134,8 +125,6 @@ size_t cone_cones_emit(const struct cone_picture *picture, const struct cone_tre
     const struct cone_material material = {conifer->needle_albedo, conifer->needle_specular};
     const float outline_m2 = fmaxf(outline_of(seen), 1e-20f);
     const float both = fmaxf(seen->halves.seen[0] + seen->halves.seen[1], 1e-9f);
-    const float opacities[2] = {seen->disc.opacity_front,
-                                seen->disc.opacity - seen->disc.opacity_front};
     const float flat_m = tree->scale * sqrtf(seen->sight.eye[0] * seen->sight.eye[0] +
                                              seen->sight.eye[1] * seen->sight.eye[1]);
     size_t count = 0;
@@ -146,14 +135,16 @@ size_t cone_cones_emit(const struct cone_picture *picture, const struct cone_tre
             continue;
         for (int back = 0; back < 2; back++) {
             struct cone_strip *strip = &strips[count];
-            if (!sheet_place(picture, tree, seen, apex_m, strip))
+            if (!sheet_place(picture, tree, seen, apex_m, outline_m2, strip))
                 break;
             count++;
             float depth = seen->needles_m2 / outline_m2 * seen->halves.seen[back] / both;
-            strip->opacity = cone_opacity_part(1 - expf(-depth), seen->mix.shares[CONE_CONE]);
+            strip->opacity = cone_opacity_part(cone_sheet_opacity(picture->shaders, depth),
+                                               seen->mix.shares[CONE_CONE]);
             strip->depth_m += (back ? 0.4f : -0.4f) * flat_m * seen->twig->radius_m;
-            cone_strip_color(picture, &material, &seen->halves.shine[back], strip);
-            float own = opacities[back] > 1e-6f ? seen->disc.lit[back] / opacities[back] : 1;
+            cone_strip_color(picture, &material, &seen->halves.shade[back], strip);
+            float own =
+                seen->lit.seen[back] > 1e-6f ? seen->lit.lit[back] / seen->lit.seen[back] : 1;
             strip->lit[0] = strip->lit[1] = own * cone_light_of(tree, seen, k);
         }
     }

@@ -3,7 +3,6 @@
 #define TREELINE_BAKE_CONE_EMIT_PARTS_H
 
 #include "bake/cone_emit.h"
-#include "bake/cone_shade.h"
 
 /* A cylinder or frustum between two places in the plant's axes, m. */
 struct cone_rod {
@@ -17,27 +16,28 @@ void cone_to_camera(const struct cone_tree *tree, const float place_m[3], float 
 bool cone_strip_place(const struct cone_picture *picture, const struct cone_tree *tree,
                       const struct cone_rod *rod, struct cone_strip *strip);
 /* Light of a material through fog at the strip's depth: the sun's part as if it were lit fully, and
- * all else. lobes: of the gloss. */
+ * all else. */
 struct cone_material {
     const float *albedo;
-    float gloss;
+    float specular;
 };
 void cone_strip_color(const struct cone_picture *picture, const struct cone_material *material,
-                      const struct cone_shine *shine, struct cone_strip *strip);
-/* Light that changes across a cylinder wide enough to see it. */
-void cone_strip_round(const struct cone_tree *tree, const struct cone_rod *rod, bool two_sided,
-                      float mean, struct cone_strip *strip);
+                      const struct needles_shade *shade, struct cone_strip *strip);
+/* Light that changes across a cylinder wide enough to see it. mean: the diffuse part of what the
+ * strip was coloured by. */
+void cone_strip_round(const struct cone_tree *tree, const struct cone_rod *rod, float mean,
+                      struct cone_strip *strip);
 /* Of two that share a place: what is left of an opacity. */
 float cone_opacity_part(float opacity, float share);
 
 /* A twig in a view, whatever it is drawn as. */
 struct cone_twig_view {
     const struct cone_twig *twig;
-    struct cone_sight sight;       /* in the twig's axes */
-    struct cone_sight plant_sight; /* in the plant's */
+    struct needles_sight sight;       /* in the twig's axes */
+    struct needles_sight plant_sight; /* in the plant's */
     struct cone_halves halves;
-    struct cone_depths depths;
-    struct cone_disc disc;
+    struct needles_disc disc;
+    struct needles_lit lit;
     float grown;      /* how much more area it is drawn with */
     float gain;       /* of the sun, of what falls on the tree */
     float needles_m2; /* a cone's, as seen, nothing hidden */

@@ -106,30 +106,35 @@ static float needles_of(const struct conifer_twig *twig, const float seen[2])
            (seen[0] + seen[1]);
 }
 
-static void view_depths(const struct cone_tree *tree, struct cone_twig_view *seen)
+/* The disc of a twig, and what of it is seen and lit. */
+
+static void view_disc(const struct cone_picture *picture, const struct cone_tree *tree,
+                      struct cone_twig_view *seen)
 {
     const struct cone_twig *twig = seen->twig;
-    const struct cone_sight *sight = &seen->sight;
+    const struct needles_sight *sight = &seen->sight;
+    const struct needles_twig shape = cone_twig_shape(twig);
     const float cones = (float)twig->twig->cones_count;
+    const bool shaded = tree->light.cones;
+    float c = sight->light[0] * sight->eye[0] + sight->light[1] * sight->eye[1];
+    float s = fabsf(sight->cross[2]), length = sqrtf(c * c + s * s);
     seen->needles_m2 = needles_of(twig->twig, seen->halves.seen);
-    depths_of(twig, cones * seen->needles_m2, sight->eye, seen->halves.seen, seen->depths.eye);
-    seen->depths.sun[0] = seen->depths.sun[1] = 0;
-    seen->depths.cosine = 1;
-    seen->depths.sine = 0;
-    if (tree->light.cones) {
-        struct cone_sight from_sun = {.exponent = 0};
-        memcpy(from_sun.sun, sight->sun, sizeof from_sun.sun);
-        memcpy(from_sun.eye, sight->sun, sizeof from_sun.eye);
-        struct cone_halves lit = cone_halves_of(twig->sine, twig->cosine, &from_sun);
-        depths_of(twig, cones * needles_of(twig->twig, lit.seen), sight->sun, lit.seen,
-                  seen->depths.sun);
-        float c = sight->sun[0] * sight->eye[0] + sight->sun[1] * sight->eye[1];
-        float s = sight->sun[0] * sight->eye[1] - sight->sun[1] * sight->eye[0];
-        float length = sqrtf(c * c + s * s);
-        seen->depths.cosine = length > 1e-9f ? c / length : 1;
-        seen->depths.sine = length > 1e-9f ? s / length : 0;
+    seen->disc = (struct needles_disc){.cosine = length > 1e-9f ? c / length : 1,
+                                       .sine = length > 1e-9f ? s / length : 0};
+    if (picture->shaders == CONE_PAPER) {
+        cone_paper_disc(&shape, sight, &seen->disc);
+    } else {
+        depths_of(twig, cones * seen->needles_m2, sight->eye, seen->halves.seen, seen->disc.eye);
+        if (shaded) {
+            float lit[2];
+            needles_cone_seen(twig->sine, twig->cosine, sight->light, lit);
+            lit[0] /= PI;
+            lit[1] /= PI;
+            depths_of(twig, cones * needles_of(twig->twig, lit), sight->light, lit,
+                      seen->disc.light);
+        }
     }
-    seen->disc = cone_disc_of(&seen->depths);
+    seen->lit = cone_disc_lit(picture->shaders, &seen->disc, shaded);
 }
 
 /* False: not drawn. */
@@ -138,7 +143,7 @@ static bool view_of(const struct cone_picture *picture, const struct cone_tree *
 {
     const struct cone_twig *twig = seen->twig = &tree->plant->twigs[index];
     const struct conifer *conifer = tree->plant->conifer;
-    float middle_m[3], camera_m[3], eye[3];
+    float middle_m[3], camera_m[3], eye[3], eye_in[3], sun_in[3];
     float reach_m = cone_twig_reach(twig, middle_m);
     cone_to_camera(tree, middle_m, camera_m);
     if (camera_m[2] + tree->scale * reach_m <= picture->view->near_m)
@@ -148,21 +153,25 @@ static bool view_of(const struct cone_picture *picture, const struct cone_tree *
     float away = fmaxf(sqrtf(dot3(eye, eye)), 1e-20f);
     for (int i = 0; i < 3; i++) {
         const float *axis = i == 0 ? twig->across : i == 1 ? twig->along : twig->axis;
-        seen->plant_sight.eye[i] = eye[i] / away;
-        seen->plant_sight.sun[i] = tree->sun[i];
-        seen->sight.eye[i] = dot3(axis, eye) / away;
-        seen->sight.sun[i] = dot3(axis, tree->sun);
+        eye_in[i] = dot3(axis, eye) / away;
+        sun_in[i] = dot3(axis, tree->sun);
     }
-    seen->sight.two_sided = seen->plant_sight.two_sided =
-        picture->effects & EFFECT_TWO_SIDED && !tree->light.cones;
-    seen->sight.exponent = seen->plant_sight.exponent =
-        conifer->needle_specular > 0 ? conifer->needle_exponent : 0;
+    for (int i = 0; i < 3; i++)
+        eye[i] /= away;
+    const float exponent = picture->effects & EFFECT_SPECULAR && conifer->needle_specular > 0
+                               ? conifer->needle_exponent
+                               : -1;
+    /* needles are solid: two-sided leaves are others */
+    seen->sight = needles_sight_of(sun_in, eye_in, exponent, false);
+    seen->plant_sight = needles_sight_of(tree->sun, eye, exponent, false);
     seen->grown = tree->twigs_grown * fminf(tree->twigs - (float)index, 1);
     seen->gain = tree->light.cones ? cone_tree_light_gain(&tree->light, middle_m) : 1;
     seen->mix = mix_at(picture, tree, twig, camera_m[2], tree->scale * away);
     seen->axis_shine = 0;
+    struct needles_sight plain = seen->plant_sight;
+    plain.exponent = -1;
     if (twig->twig->axis_radius_m > 0)
-        seen->axis_shine = cone_needle_shine(twig->axis, &seen->plant_sight).diffuse;
+        seen->axis_shine = needles_reflect(twig->axis, &plain).diffuse;
     return true;
 }
 
@@ -183,12 +192,12 @@ static size_t axis_emit(const struct cone_picture *picture, const struct cone_tr
     if (!cone_strip_place(picture, tree, &rod, strip))
         return 0;
     const struct cone_material material = {tree->plant->conifer->bark_albedo, 0};
-    const struct cone_shine white = {1, 0};
+    const struct needles_shade white = {1, 0, 1};
     cone_strip_color(picture, &material, &white, strip);
-    cone_strip_round(tree, &rod, false, seen->axis_shine, strip);
+    cone_strip_round(tree, &rod, seen->axis_shine, strip);
     strip->opacity = cone_opacity_part(1, share);
     if (tree->light.cones && from->cones_count) {
-        float own = expf(-cone_disc_depth(seen->depths.sun, 0, 0));
+        float own = expf(-needles_disc_shadow(&seen->disc, 0, 0));
         strip->lit[0] = own * cone_light_of(tree, seen, 0);
         strip->lit[1] = own * cone_light_of(tree, seen, from->cones_count - 1);
     } else {
@@ -204,22 +213,22 @@ static void twig_light(const struct cone_picture *picture, const struct cone_tre
 {
     const struct conifer_twig *from = seen->twig->twig;
     const struct conifer *conifer = tree->plant->conifer;
-    const struct cone_disc *disc = &seen->disc;
+    const float *shares = seen->lit.seen;
     const struct cone_material needles = {conifer->needle_albedo, conifer->needle_specular};
     const struct cone_material bark = {conifer->bark_albedo, 0};
     float band = fminf(from->axis_radius_m / seen->twig->radius_m, 1);
-    float behind = (disc->opacity - disc->opacity_front) * (1 - band);
-    float axis = band * expf(-seen->depths.eye[0]), sum = disc->opacity_front + behind + axis;
+    float behind = shares[1] * (1 - band);
+    float axis = band * expf(-seen->disc.eye[0]), sum = shares[0] + behind + axis;
     struct cone_strip other = *strip;
-    struct cone_shine shine = {0, 0}, axis_shine = {seen->axis_shine, 0};
+    struct needles_shade shade = {0, 0, 1}, axis_shade = {seen->axis_shine, 0, 1};
     for (int back = 0; back < 2; back++) {
-        float lit = disc->lit[back] * (back ? 1 - band : 1) / fmaxf(sum, 1e-9f);
-        shine.diffuse += lit * seen->halves.shine[back].diffuse;
-        shine.gloss += lit * seen->halves.shine[back].gloss;
+        float lit = seen->lit.lit[back] * (back ? 1 - band : 1) / fmaxf(sum, 1e-9f);
+        shade.diffuse += lit * seen->halves.shade[back].diffuse;
+        shade.specular += lit * seen->halves.shade[back].specular;
     }
-    cone_strip_color(picture, &needles, &shine, strip);
-    cone_strip_color(picture, &bark, &axis_shine, &other);
-    float share = axis / fmaxf(sum, 1e-9f), own = expf(-cone_disc_depth(seen->depths.sun, 0, 0));
+    cone_strip_color(picture, &needles, &shade, strip);
+    cone_strip_color(picture, &bark, &axis_shade, &other);
+    float share = axis / fmaxf(sum, 1e-9f), own = expf(-needles_disc_shadow(&seen->disc, 0, 0));
     for (int c = 0; c < 3; c++) {
         strip->shade[c] += share * (other.shade[c] - strip->shade[c]);
         strip->sun[c] += share * own * other.sun[c];
@@ -261,11 +270,12 @@ size_t cone_twig_emit(const struct cone_picture *picture, const struct cone_tree
     if (!view_of(picture, tree, index, &seen))
         return 0;
     if (!seen.twig->twig->cones_count) {
-        seen.depths.sun[0] = seen.depths.sun[1] = 0;
+        seen.disc.light[0] = seen.disc.light[1] = 0;
         return axis_emit(picture, tree, &seen, 1, strips);
     }
-    seen.halves = cone_halves_of(seen.twig->sine, seen.twig->cosine, &seen.sight);
-    view_depths(tree, &seen);
+    const struct needles_twig shape = cone_twig_shape(seen.twig);
+    seen.halves = cone_halves_of(picture->shaders, &shape, &seen.sight);
+    view_disc(picture, tree, &seen);
     if (seen.mix.shares[CONE_TWIG] > 0)
         count += whole_emit(picture, tree, &seen, strips);
     if (seen.mix.shares[CONE_TWIG] < 1)

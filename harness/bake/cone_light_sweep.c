@@ -1,7 +1,6 @@
 /* Light within a plant: twigs and bark in the order in which the sun meets them, on a grid of what
  * is left. */
 #include "bake/cone_light_parts.h"
-#include "bake/cone_shade.h"
 #include "bake/cull.h"
 
 #include <math.h>
@@ -123,18 +122,18 @@ static void twig_pass(const struct cone_twig *twig, struct cone_kind *kind)
 {
     const struct conifer_twig *from = twig->twig;
     const float *down = kind->volume.frame.axes[2];
-    struct cone_sight sight = {.exponent = 0};
+    float sun[3], seen[2];
     for (int i = 0; i < 3; i++) {
         const float *axis = i == 0 ? twig->across : i == 1 ? twig->along : twig->axis;
-        sight.sun[i] = sight.eye[i] = -dot3(axis, down);
+        sun[i] = -dot3(axis, down);
     }
-    struct cone_halves halves = cone_halves_of(twig->sine, twig->cosine, &sight);
-    float flat = sqrtf(sight.sun[0] * sight.sun[0] + sight.sun[1] * sight.sun[1]);
-    float needles_m2 = (float)from->needles_count * 2 * from->needle_radius_m *
-                       from->needle_length_m * 0.5f * (halves.seen[0] + halves.seen[1]);
+    needles_cone_seen(twig->sine, twig->cosine, sun, seen);
+    float flat = sqrtf(sun[0] * sun[0] + sun[1] * sun[1]);
+    float needles_m2 = (float)from->needles_count * from->needle_radius_m * from->needle_length_m *
+                       (seen[0] + seen[1]) / PI;
     float outline_m2 = 2 * twig->radius_m *
-                       (from->spacing_m * flat + 0.5f * PI * twig->radius_m * fabsf(sight.sun[2]) /
-                                                     (float)from->cones_count);
+                       (from->spacing_m * flat +
+                        0.5f * PI * twig->radius_m * fabsf(sun[2]) / (float)from->cones_count);
     float half_m = 0.5f * sqrtf(outline_m2), place_m[3];
     float opacity = 1 - expf(-needles_m2 / fmaxf(outline_m2, 1e-20f));
     for (uint32_t k = 0; k < from->cones_count; k++) {

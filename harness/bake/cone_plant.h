@@ -3,6 +3,7 @@
 #ifndef TREELINE_BAKE_CONE_PLANT_H
 #define TREELINE_BAKE_CONE_PLANT_H
 
+#include "bake/needles.h"
 #include "base/arena.h"
 #include "plant/conifer.h"
 
@@ -33,6 +34,18 @@ struct cone_plant {
 };
 
 struct cone_plant *cone_plant_create(struct arena *arena, const struct conifer *conifer);
+
+/* As the shaders want a twig. */
+static inline struct needles_twig cone_twig_shape(const struct cone_twig *twig)
+{
+    return (struct needles_twig){twig->sine,
+                                 twig->cosine,
+                                 (float)twig->twig->needles_count,
+                                 twig->twig->needle_length_m,
+                                 twig->twig->needle_radius_m,
+                                 twig->twig->spacing_m,
+                                 twig->radius_m};
+}
 
 /* Largest distance of a twig's matter from the middle of its axis. */
 float cone_twig_reach(const struct cone_twig *twig, float center_m[3]);

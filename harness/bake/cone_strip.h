@@ -25,7 +25,6 @@ struct cone_strip {
                              turned by +90 degrees) and toward the eye */
     float round;          /* 0: even across it, mean times the sun; 1: a cylinder's light */
     float mean;
-    float two_sided; /* 1: light from behind counts */
 };
 
 /* Overlap of [at - 1/2, at + 1/2] with [low, high]. */
@@ -66,7 +65,7 @@ static inline float cone_strip_lit(const struct cone_strip *strip, const struct 
     float u = place->across_px / (half + 1e-6f);
     u = u > -0.97f ? u < 0.97f ? u : 0.97f : -0.97f;
     float facing = u * strip->across + sqrtf(1 - u * u) * strip->toward;
-    facing = facing > 0 ? facing : -strip->two_sided * facing;
+    facing = facing > 0 ? facing : 0;
     return lit * (strip->mean + strip->round * (facing - strip->mean));
 }
 

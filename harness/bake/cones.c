@@ -48,6 +48,7 @@ static struct cone_picture picture_of(const struct workspace *workspace, const s
         .focal_px = cull_focal_px(view),
         .fog_density_per_m = effects & EFFECT_FOG ? scene->fog.density_per_m : 0,
         .choice = cones->options.choice,
+        .shaders = cones->options.shaders,
         .plants = cones->plants,
         .lights = cones->lights,
     };

@@ -10,6 +10,7 @@
 
 struct cones_options {
     struct cone_choice choice;
+    enum cone_shaders shaders;
     bool is_naive;
     bool shadows;
     bool edges; /* relief is cut into layers where its edge crosses a pixel */

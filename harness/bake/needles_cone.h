@@ -126,22 +126,31 @@ static inline real needles_mean_sine(const struct needles_twig *twig, const real
     return sum;
 }
 
-static inline struct needles_cover needles_cone_cover(const struct needles_twig *twig,
-                                                      const real eye[3])
+/* Footprints of the nearer sheet and the farther one; returns the azimuth of their limit. */
+static inline real needles_cone_sheets(const struct needles_twig *twig, const real eye[3],
+                                       real footprints[2])
 {
     const real flat = real_sqrt(eye[0] * eye[0] + eye[1] * eye[1]);
     const real p = real_abs(twig->cosine) * flat;
     const real k = (twig->cosine < 0 ? -twig->sine : twig->sine) * eye[2];
     const real square = (p - k) * (p + k), height = square > 0 ? real_sqrt(square) : 0;
-    const real limit = real_atan2(height, k);
+    /* sin e - e cos e, of e the limit or pi less it, times p where that is not all of a circle. */
+    footprints[0] =
+        twig->sine * (height > 0 ? p * needles_lune(height / p, k / p) : real_max(-k, 0) * REAL_PI);
+    footprints[1] =
+        twig->sine * (height > 0 ? p * needles_lune(height / p, -k / p) : real_max(k, 0) * REAL_PI);
+    return real_atan2(height, k);
+}
+
+static inline struct needles_cover needles_cone_cover(const struct needles_twig *twig,
+                                                      const real eye[3])
+{
+    real footprints[2];
+    const real limit = needles_cone_sheets(twig, eye, footprints);
     const real q = twig->count * twig->radius_m / (REAL_PI * real_max(twig->length_m, REAL(1e-12)));
     struct needles_cover cover = {.limit_rad = limit};
-    /* sin e - e cos e, of e the limit or pi less it, times p where that is not all of a circle. */
-    const real near = height > 0 ? p * needles_lune(height / p, k / p) : real_max(-k, 0) * REAL_PI;
-    const real far = height > 0 ? p * needles_lune(height / p, -k / p) : real_max(k, 0) * REAL_PI;
     const real to_limit = 2 * q * limit * needles_mean_sine(twig, eye, 0, limit);
     const real past = 2 * q * (REAL_PI - limit) * needles_mean_sine(twig, eye, limit, REAL_PI);
-    const real footprints[2] = {twig->sine * near, twig->sine * far};
     const real areas[2] = {to_limit, past};
     const int small = footprints[0] > footprints[1];
     for (int i = 0; i < 2; i++) {

@@ -18,6 +18,7 @@
 #define needles_cone_panel needles_cone_panel_double
 #define needles_cone_seen needles_cone_seen_double
 #define needles_cone_shade needles_cone_shade_double
+#define needles_cone_sheets needles_cone_sheets_double
 #define needles_cone_sums needles_cone_sums_double
 #define needles_cover needles_cover_double
 #define needles_cross needles_cross_double
@@ -79,6 +80,7 @@
 #undef needles_cone_panel
 #undef needles_cone_seen
 #undef needles_cone_shade
+#undef needles_cone_sheets
 #undef needles_cone_sums
 #undef needles_cover
 #undef needles_cross
