@@ -2,7 +2,7 @@
 #include "bake/cone_light.h"
 #include "bake/cone_light_parts.h"
 #include "bake/cull.h"
-#include "bake/horizon.h"
+#include "bake/shadow_light.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,10 +25,7 @@ struct cone_lights {
     struct shadow_caster *casters;
     float *keys, *scratch_keys;
     uint32_t *order, *scratch_order;
-    struct shadow_map map;
-    float *terrain_m; /* NULL: no terrain, or flat */
-    struct shadow_axes frame;
-    float sun_direction[3], least_m; /* height of the terrain's lowest sample */
+    struct shadow_light light;
 };
 
 static struct cone_kind *kind_of(const struct cone_lights *lights, const struct instance *instance)
@@ -66,8 +63,7 @@ struct cone_lights *cone_lights_create(struct arena *arena, const struct scene *
                                    .scene = scene,
                                    .plants = plants,
                                    .kinds_count = TURNS * scene->species_count,
-                                   .side = SIDE_MAX,
-                                   .least_m = INFINITY};
+                                   .side = SIDE_MAX};
     while (lights->side > 2 && count * (size_t)(lights->side * lights->side) > GAINS_MAX)
         lights->side /= 2;
     lights->kinds = ARENA_ARRAY(arena, struct cone_kind, lights->kinds_count);
@@ -78,11 +74,7 @@ struct cone_lights *cone_lights_create(struct arena *arena, const struct scene *
     lights->scratch_keys = lights->keys + count;
     lights->order = ARENA_ARRAY(arena, uint32_t, 2 * count);
     lights->scratch_order = lights->order + count;
-    const size_t samples = (size_t)scene->terrain.samples_x * scene->terrain.samples_z;
-    for (size_t i = 0; i < samples; i++)
-        lights->least_m = fminf(lights->least_m, scene->terrain.heights_m[i]);
-    if (samples > 0 && !horizon_is_flat(&scene->terrain))
-        lights->terrain_m = ARENA_ARRAY(arena, float, samples);
+    shadow_light_create(arena, &scene->terrain, &lights->light);
     return lights;
 }
 
@@ -95,19 +87,12 @@ static void to_plant(double turn_rad, const float world[3], float plant[3])
     plant[2] = world[0] * s + world[2] * c;
 }
 
-static void along_axes(const struct shadow_axes *frame, const float world[3], float place[3])
-{
-    for (int k = 0; k < 3; k++)
-        place[k] = frame->axes[k][0] * world[0] + frame->axes[k][1] * world[1] +
-                   frame->axes[k][2] * world[2];
-}
-
 static struct shadow_caster caster_of(const struct cone_lights *lights, size_t tree)
 {
     const struct instance *instance = &lights->scene->instances[tree];
     struct shadow_caster caster = {.scale = instance->scale,
                                    .volume = &kind_of(lights, instance)->volume};
-    along_axes(&lights->frame, instance->position_m, caster.place_m);
+    shadow_along(&lights->light.frame, instance->position_m, caster.place_m);
     return caster;
 }
 
@@ -125,75 +110,13 @@ static void map_build(struct cone_lights *lights, int threads)
               false);
     for (size_t i = 0; i < count; i++)
         lights->casters[i] = caster_of(lights, lights->order[i]);
-    shadow_map_fill(lights->arena, &lights->map, lights->casters, count, TEXELS_MAX, texel_m,
+    shadow_map_fill(lights->arena, &lights->light.map, lights->casters, count, TEXELS_MAX, texel_m,
                     threads);
-}
-
-/* A sun below the horizon shines from below the terrain's lowest height, past its borders. */
-static bool is_underground(const struct cone_lights *lights, const float world_m[3])
-{
-    const struct terrain *terrain = &lights->scene->terrain;
-    const float *sun = lights->sun_direction;
-    float away = (lights->least_m - world_m[1]) / sun[1];
-    return fabsf(world_m[0] + away * sun[0]) <= 0.5f * terrain->size_x_m &&
-           fabsf(world_m[2] + away * sun[2]) <= 0.5f * terrain->size_z_m;
-}
-
-/* Through all trees and the terrain down to a place along the axes. */
-static float light_at(const struct cone_lights *lights, const float place_m[3])
-{
-    const struct terrain *terrain = &lights->scene->terrain;
-    const bool low = terrain->samples_x > 0 && lights->sun_direction[1] < 0;
-    float world_m[3];
-    for (int i = 0; i < 3 && (low || lights->terrain_m); i++)
-        world_m[i] = place_m[0] * lights->frame.axes[0][i] + place_m[1] * lights->frame.axes[1][i] +
-                     place_m[2] * lights->frame.axes[2][i];
-    if (low && is_underground(lights, world_m))
-        return 0;
-    if (!low && lights->terrain_m && shadow_terrain_at(terrain, lights->terrain_m, world_m) <= 0)
-        return 0;
-    return shadow_map_at(&lights->map, place_m);
 }
 
 float cone_lights_at(const struct cone_lights *lights, const float place_m[3])
 {
-    float place[3];
-    along_axes(&lights->frame, place_m, place);
-    return light_at(lights, place);
-}
-
-/* Where light meets a tree: before its first matter there, so that it does not shade itself. */
-static float entry_of(const struct cone_lights *lights, const struct shadow_caster *caster,
-                      const float across_m[2])
-{
-    const struct shadow_volume *volume = caster->volume;
-    float width_m = lights->map.texel_m / caster->scale;
-    struct shadow_plate plate = shadow_volume_plate(volume, across_m, width_m);
-    if (plate.cover < 0.02f)
-        plate = shadow_volume_plate(volume, across_m, 4 * width_m);
-    float entry_m = plate.cover < 0.02f
-                        ? volume->low_m[2] + 0.5f * volume->cell_m * (float)volume->size[2]
-                        : plate.first_m / plate.cover;
-    return caster->place_m[2] + caster->scale * entry_m - lights->map.texel_m;
-}
-
-static void gains_of_tree(const struct cone_lights *lights, size_t tree)
-{
-    const struct shadow_caster caster = caster_of(lights, tree);
-    const struct shadow_volume *volume = caster.volume;
-    const int side = lights->side;
-    uint8_t *gains = lights->gains + tree * (size_t)(side * side);
-    for (int k = 0; k < side * side; k++) {
-        const int at[2] = {k % side, k / side};
-        float across_m[2], place_m[3];
-        for (int i = 0; i < 2; i++) {
-            across_m[i] = volume->low_m[i] + volume->cell_m * (float)volume->size[i] *
-                                                 (float)at[i] / (float)(side - 1);
-            place_m[i] = caster.place_m[i] + caster.scale * across_m[i];
-        }
-        place_m[2] = entry_of(lights, &caster, across_m);
-        gains[k] = (uint8_t)(255 * light_at(lights, place_m) + 0.5f);
-    }
+    return shadow_light_at(&lights->light, place_m);
 }
 
 static void kinds_build(struct cone_lights *lights, int threads)
@@ -202,7 +125,7 @@ static void kinds_build(struct cone_lights *lights, int threads)
         struct cone_kind *kind = &lights->kinds[k];
         struct shadow_axes frame;
         for (int i = 0; i < 3; i++)
-            to_plant(kind->turn_rad, lights->frame.axes[i], frame.axes[i]);
+            to_plant(kind->turn_rad, lights->light.frame.axes[i], frame.axes[i]);
         if (kind->trees)
             cone_kind_lay(lights->arena, lights->plants[kind->species], &frame, kind);
     }
@@ -215,17 +138,16 @@ static void kinds_build(struct cone_lights *lights, int threads)
 void cone_lights_turn(struct cone_lights *lights, const float sun_direction[3], int threads)
 {
     const size_t count = lights->scene->instances_count;
-    if (!memcmp(lights->sun_direction, sun_direction, sizeof lights->sun_direction))
+    if (!shadow_light_turn(&lights->light, sun_direction))
         return;
-    memcpy(lights->sun_direction, sun_direction, sizeof lights->sun_direction);
-    lights->frame = shadow_axes_of(sun_direction);
     kinds_build(lights, threads);
-    if (lights->terrain_m && sun_direction[1] >= 0)
-        shadow_terrain_sweep(&lights->scene->terrain, sun_direction, lights->terrain_m);
     map_build(lights, threads);
 #pragma omp parallel for num_threads(threads) schedule(static, 64)
-    for (size_t i = 0; i < count; i++)
-        gains_of_tree(lights, i);
+    for (size_t i = 0; i < count; i++) {
+        const struct shadow_caster caster = caster_of(lights, i);
+        shadow_light_gains(&lights->light, &caster, lights->side,
+                           lights->gains + i * (size_t)(lights->side * lights->side));
+    }
 }
 
 void cone_lights_of_tree(const struct cone_lights *lights, size_t tree,

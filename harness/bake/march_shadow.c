@@ -1,7 +1,7 @@
 /* Sun shadows of the march: what is built when the sun has moved, and what a tree is given of it.
  */
-#include "bake/horizon.h"
 #include "bake/march_shadow_parts.h"
+#include "bake/shadow_light.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,11 +36,7 @@ struct march_shadows {
     struct shadow_caster *casters; /* by depth */
     float *keys, *scratch_keys;
     uint32_t *order, *scratch_order;
-    struct shadow_map map;
-    float *terrain_m; /* NULL: no terrain, or flat */
-    struct shadow_axes frame;
-    float sun_direction[3];
-    float least_m; /* height of the terrain's lowest sample */
+    struct shadow_light light;
 };
 
 enum {
@@ -174,20 +170,8 @@ enum status march_shadows_create(struct workspace *workspace, const struct scene
     shadows->scratch_keys = shadows->keys + count;
     shadows->order = ARENA_ARRAY(arena, uint32_t, 2 * count);
     shadows->scratch_order = shadows->order + count;
-    shadows->least_m = INFINITY;
-    for (size_t i = 0; i < (size_t)scene->terrain.samples_x * scene->terrain.samples_z; i++)
-        shadows->least_m = fminf(shadows->least_m, scene->terrain.heights_m[i]);
-    if (scene->terrain.samples_x > 0 && !horizon_is_flat(&scene->terrain))
-        shadows->terrain_m =
-            ARENA_ARRAY(arena, float, (size_t)scene->terrain.samples_x * scene->terrain.samples_z);
+    shadow_light_create(arena, &scene->terrain, &shadows->light);
     return STATUS_OK;
-}
-
-static void along_axes(const struct shadow_axes *frame, const float world[3], float place[3])
-{
-    for (int k = 0; k < 3; k++)
-        place[k] = frame->axes[k][0] * world[0] + frame->axes[k][1] * world[1] +
-                   frame->axes[k][2] * world[2];
 }
 
 static void volumes_build(struct march_shadows *shadows, int threads)
@@ -199,7 +183,7 @@ static void volumes_build(struct march_shadows *shadows, int threads)
                                           .stretch = 1};
         struct shadow_axes frame;
         for (int i = 0; i < 3; i++)
-            march_to_plant(&turned, shadows->frame.axes[i], 1, frame.axes[i]);
+            march_to_plant(&turned, shadows->light.frame.axes[i], 1, frame.axes[i]);
         if (kind->is_wanted)
             shadow_volume_size(shadows->arena, shadows->species[kind->species].voxels, &frame,
                                (float)kind->stretch, kind->cell_m, &kind->volume);
@@ -215,7 +199,7 @@ static struct shadow_caster caster_of(const struct march_shadows *shadows,
                                       const struct march_tree *tree)
 {
     struct shadow_caster caster = {.scale = tree->scale, .volume = &kind_of(shadows, tree)->volume};
-    along_axes(&shadows->frame, tree->position_m, caster.place_m);
+    shadow_along(&shadows->light.frame, tree->position_m, caster.place_m);
     return caster;
 }
 
@@ -232,75 +216,8 @@ static void map_build(struct march_shadows *shadows, int threads)
               false);
     for (size_t i = 0; i < count; i++)
         shadows->casters[i] = caster_of(shadows, &shadows->trees[shadows->order[i]]);
-    shadow_map_fill(shadows->arena, &shadows->map, shadows->casters, count, TEXELS_MAX,
+    shadow_map_fill(shadows->arena, &shadows->light.map, shadows->casters, count, TEXELS_MAX,
                     least_scale * shadows->least_cell_m, threads);
-}
-
-/* A sun below the horizon shines from below the terrain's lowest height, past its borders. */
-static bool is_underground(const struct march_shadows *shadows, const float world_m[3])
-{
-    const struct terrain *terrain = &shadows->scene->terrain;
-    const float *sun = shadows->sun_direction;
-    float away = (shadows->least_m - world_m[1]) / sun[1];
-    return fabsf(world_m[0] + away * sun[0]) <= 0.5f * terrain->size_x_m &&
-           fabsf(world_m[2] + away * sun[2]) <= 0.5f * terrain->size_z_m;
-}
-
-/* Through all trees and the terrain down to a place along the axes. */
-static float light_at(const struct march_shadows *shadows, const float place_m[3])
-{
-    const struct terrain *terrain = &shadows->scene->terrain;
-    const bool low = terrain->samples_x > 0 && shadows->sun_direction[1] < 0;
-    float world_m[3];
-    for (int i = 0; i < 3 && (low || shadows->terrain_m); i++)
-        world_m[i] = place_m[0] * shadows->frame.axes[0][i] +
-                     place_m[1] * shadows->frame.axes[1][i] +
-                     place_m[2] * shadows->frame.axes[2][i];
-    if (low && is_underground(shadows, world_m))
-        return 0;
-    if (!low && shadows->terrain_m && shadow_terrain_at(terrain, shadows->terrain_m, world_m) <= 0)
-        return 0;
-    return shadow_map_at(&shadows->map, place_m);
-}
-
-/* Where light meets a tree: before its first matter there, so that it does not shade itself. */
-static float entry_of(const struct march_shadows *shadows, const struct shadow_caster *caster,
-                      const float across_m[2], float *cover)
-{
-    const struct shadow_volume *volume = caster->volume;
-    float width_m = shadows->map.texel_m / caster->scale;
-    struct shadow_plate plate = shadow_volume_plate(volume, across_m, width_m);
-    *cover = plate.cover;
-    if (plate.cover < 0.02f)
-        plate = shadow_volume_plate(volume, across_m, 4 * width_m);
-    float entry_m = plate.cover < 0.02f
-                        ? volume->low_m[2] + 0.5f * volume->cell_m * (float)volume->size[2]
-                        : plate.first_m / plate.cover;
-    return caster->place_m[2] + caster->scale * entry_m - shadows->map.texel_m;
-}
-
-static void gains_of_tree(const struct march_shadows *shadows, size_t tree)
-{
-    const struct shadow_caster caster = caster_of(shadows, &shadows->trees[tree]);
-    const struct shadow_volume *volume = caster.volume;
-    const int side = shadows->side;
-    uint8_t *gains = shadows->gains + tree * (size_t)(side * side);
-    float sum = 0, weights = 0;
-    for (int k = 0; k < side * side; k++) {
-        const int at[2] = {k % side, k / side};
-        float across_m[2], place_m[3], cover;
-        for (int i = 0; i < 2; i++) {
-            across_m[i] = volume->low_m[i] + volume->cell_m * (float)volume->size[i] *
-                                                 (float)at[i] / (float)(side - 1);
-            place_m[i] = caster.place_m[i] + caster.scale * across_m[i];
-        }
-        place_m[2] = entry_of(shadows, &caster, across_m, &cover);
-        float gain = light_at(shadows, place_m);
-        gains[k] = (uint8_t)(255 * gain + 0.5f);
-        sum += (cover + 1e-3f) * gain;
-        weights += cover + 1e-3f;
-    }
-    shadows->means[tree] = sum / weights;
 }
 
 static float mean_of_cell(const struct march_shadows *shadows, uint32_t cell)
@@ -318,19 +235,18 @@ static float mean_of_cell(const struct march_shadows *shadows, uint32_t cell)
 
 void march_shadows_light(struct march_shadows *shadows, const float sun_direction[3], int threads)
 {
-    const struct terrain *terrain = &shadows->scene->terrain;
     const size_t count = shadows->scene->instances_count;
-    if (!memcmp(shadows->sun_direction, sun_direction, sizeof shadows->sun_direction))
+    if (!shadow_light_turn(&shadows->light, sun_direction))
         return;
-    memcpy(shadows->sun_direction, sun_direction, sizeof shadows->sun_direction);
-    shadows->frame = shadow_axes_of(sun_direction);
     volumes_build(shadows, threads);
-    if (shadows->terrain_m && sun_direction[1] >= 0)
-        shadow_terrain_sweep(terrain, sun_direction, shadows->terrain_m);
     map_build(shadows, threads);
 #pragma omp parallel for num_threads(threads) schedule(static, 64)
-    for (size_t i = 0; i < count; i++)
-        gains_of_tree(shadows, i);
+    for (size_t i = 0; i < count; i++) {
+        const struct shadow_caster caster = caster_of(shadows, &shadows->trees[i]);
+        shadows->means[i] =
+            shadow_light_gains(&shadows->light, &caster, shadows->side,
+                               shadows->gains + i * (size_t)(shadows->side * shadows->side));
+    }
     const size_t cells = shadows->cells ? cells_count(shadows->cells) : 0;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
     for (size_t cell = 0; cell < cells; cell++)
@@ -381,7 +297,5 @@ float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell)
 
 float march_shadows_at(const struct march_shadows *shadows, const float place_m[3])
 {
-    float place[3];
-    along_axes(&shadows->frame, place_m, place);
-    return light_at(shadows, place);
+    return shadow_light_at(&shadows->light, place_m);
 }
