@@ -56,7 +56,7 @@ LDFLAGS_ALL := $(MODE) -fopenmp -rdynamic $(LDFLAGS)
 WALL_SKIP := $(if $(GL_OSMESA),,harness/wall/gl_osmesa.c) $(if $(GL_EGL),,harness/wall/gl_egl.c)
 # Kernels for a processor's own vectors: files of their own, with the flags that they need.
 ARCHITECTURE := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
-MARCH_SKIP := $(if $(filter x86_64,$(ARCHITECTURE)),harness/bake/march_isa_any.c,$(addprefix harness/bake/march_,isa_x86.c avx2.c avx512.c))
+MARCH_SKIP := $(if $(filter x86_64,$(ARCHITECTURE)),harness/bake/march_isa_any.c harness/bake/cone_isa_any.c,$(addprefix harness/bake/,$(addprefix march_,isa_x86.c avx2.c avx512.c) cone_isa_x86.c cone_lanes_avx2.c))
 SOURCES := $(filter-out $(WALL_SKIP) $(MARCH_SKIP) harness/cli/treeline.c,$(sort $(wildcard harness/*/*.c))) \
     $(sort $(wildcard methods/*.c))
 GENERATED_C := $(GEN)/methods_builtin.c $(GEN)/gl_load.c $(BUILD)/gl_backends.c
@@ -91,7 +91,7 @@ $(ARCHIVE): $(OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(OBJ)/harness/bake/march_avx2.o $(OBJ)/harness/bake/march_avx2.tidy: CFLAGS_ALL += -mavx2
+$(foreach name,march_avx2 cone_lanes_avx2,$(OBJ)/harness/bake/$(name).o $(OBJ)/harness/bake/$(name).tidy): CFLAGS_ALL += -mavx2
 $(OBJ)/harness/bake/march_avx512.o $(OBJ)/harness/bake/march_avx512.tidy: CFLAGS_ALL += -mavx512f -mavx512dq -mavx512bw -mavx512vl
 $(OBJ)/%.o: %.c | $(GENERATED_H)
 	@mkdir -p $(@D)

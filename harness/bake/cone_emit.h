@@ -3,6 +3,7 @@
 #ifndef TREELINE_BAKE_CONE_EMIT_H
 #define TREELINE_BAKE_CONE_EMIT_H
 
+#include "bake/cone_lanes.h"
 #include "bake/cone_light.h"
 #include "bake/cone_shade.h"
 #include "bake/cone_strip.h"
@@ -27,6 +28,7 @@ struct cone_picture {
     float fog_density_per_m;
     struct cone_choice choice;
     enum cone_shaders shaders;
+    void (*shade)(struct cone_lanes_job *job); /* twigs by lanes; NULL: one by one */
     struct cone_plant *const *plants;
     const struct cone_lights *lights; /* NULL: the sun has no shadows */
 };
@@ -63,6 +65,9 @@ struct cone_beam {
 bool cone_beam_meets(const struct cone_beam *beam, const float center_m[3], float radius_m);
 size_t cone_twig_emit(const struct cone_picture *picture, const struct cone_tree *tree, size_t twig,
                       const struct cone_beam *beam, struct cone_strip *strips);
+/* All strips of some twigs, one after the other; ends: how many there are with each. */
+void cone_twigs_emit(const struct cone_picture *picture, const struct cone_tree *tree, size_t first,
+                     size_t count, struct cone_strip *strips, size_t ends[CONE_LANES]);
 size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree *tree, size_t bark,
                       struct cone_strip *strips);
 

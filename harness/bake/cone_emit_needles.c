@@ -22,8 +22,8 @@ static void needle_light(const struct cone_twig_view *seen, const float azimuth[
 }
 
 static size_t needle_emit(const struct cone_picture *picture, const struct cone_tree *tree,
-                          const struct cone_twig_view *seen, const float apex_m[3],
-                          const float azimuth[2], struct cone_strip *strip)
+                          const struct cone_twig_view *seen, const struct needles_sight *sight,
+                          const float apex_m[3], const float azimuth[2], struct cone_strip *strip)
 {
     const struct cone_twig *twig = seen->twig;
     const struct conifer_twig *from = twig->twig;
@@ -40,8 +40,7 @@ static size_t needle_emit(const struct cone_picture *picture, const struct cone_
     if (!cone_strip_place(picture, tree, &rod, strip))
         return 0;
     const struct cone_material material = {conifer->needle_albedo, conifer->needle_specular};
-    const struct needles_shine shine =
-        cone_needle_shine(picture->shaders, axis, &seen->plant_sight);
+    const struct needles_shine shine = cone_needle_shine(picture->shaders, axis, sight);
     const float diffuse = fmaxf(shine.diffuse, 1e-4f);
     const struct needles_shade shade = {1, shine.specular / diffuse, 1};
     strip->opacity = cone_opacity_part(1, seen->mix.shares[CONE_NEEDLE]);
@@ -55,6 +54,8 @@ size_t cone_needles_emit(const struct cone_picture *picture, const struct cone_t
                          struct cone_strip *strips)
 {
     const struct conifer_twig *from = seen->twig->twig;
+    const struct needles_sight sight =
+        needles_sight_of(tree->sun, seen->eye, seen->sight.exponent, false);
     const float step_rad = 2 * PI / (float)from->needles_count;
     const float step[2] = {cosf(step_rad), sinf(step_rad)};
     size_t count = 0;
@@ -66,7 +67,7 @@ size_t cone_needles_emit(const struct cone_picture *picture, const struct cone_t
         float turn_rad = from->azimuth_rad + (float)k * from->azimuth_step_rad;
         float azimuth[2] = {cosf(turn_rad), sinf(turn_rad)}, light = cone_light_of(tree, seen, k);
         for (uint32_t needle = 0; needle < from->needles_count; needle++) {
-            size_t more = needle_emit(picture, tree, seen, apex_m, azimuth, strips + count);
+            size_t more = needle_emit(picture, tree, seen, &sight, apex_m, azimuth, strips + count);
             if (more && tree->light.cones)
                 needle_light(seen, azimuth, light, strips[count].lit);
             count += more;

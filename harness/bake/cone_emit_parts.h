@@ -33,8 +33,8 @@ float cone_opacity_part(float opacity, float share);
 /* A twig in a view, whatever it is drawn as. */
 struct cone_twig_view {
     const struct cone_twig *twig;
-    struct needles_sight sight;       /* in the twig's axes */
-    struct needles_sight plant_sight; /* in the plant's */
+    struct needles_sight sight; /* in the twig's axes; by lanes: light, eye and exponent alone */
+    float eye[3];               /* in the plant's */
     struct cone_halves halves;
     struct needles_disc disc;
     struct needles_lit lit;

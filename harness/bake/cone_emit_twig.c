@@ -143,35 +143,27 @@ static bool view_of(const struct cone_picture *picture, const struct cone_tree *
 {
     const struct cone_twig *twig = seen->twig = &tree->plant->twigs[index];
     const struct conifer *conifer = tree->plant->conifer;
-    float middle_m[3], camera_m[3], eye[3], eye_in[3], sun_in[3];
+    float middle_m[3], camera_m[3];
     float reach_m = cone_twig_reach(twig, middle_m);
     cone_to_camera(tree, middle_m, camera_m);
     if (camera_m[2] + tree->scale * reach_m <= picture->view->near_m)
         return false;
     for (int i = 0; i < 3; i++)
-        eye[i] = tree->eye_m[i] - middle_m[i];
-    float away = fmaxf(sqrtf(dot3(eye, eye)), 1e-20f);
+        seen->eye[i] = tree->eye_m[i] - middle_m[i];
+    float away = fmaxf(sqrtf(dot3(seen->eye, seen->eye)), 1e-20f);
+    for (int i = 0; i < 3; i++)
+        seen->eye[i] /= away;
     for (int i = 0; i < 3; i++) {
         const float *axis = i == 0 ? twig->across : i == 1 ? twig->along : twig->axis;
-        eye_in[i] = dot3(axis, eye) / away;
-        sun_in[i] = dot3(axis, tree->sun);
+        seen->sight.eye[i] = dot3(axis, seen->eye);
+        seen->sight.light[i] = dot3(axis, tree->sun);
     }
-    for (int i = 0; i < 3; i++)
-        eye[i] /= away;
-    const float exponent = picture->effects & EFFECT_SPECULAR && conifer->needle_specular > 0
+    seen->sight.exponent = picture->effects & EFFECT_SPECULAR && conifer->needle_specular > 0
                                ? conifer->needle_exponent
                                : -1;
-    /* needles are solid: two-sided leaves are others */
-    seen->sight = needles_sight_of(sun_in, eye_in, exponent, false);
-    seen->plant_sight = needles_sight_of(tree->sun, eye, exponent, false);
     seen->grown = tree->twigs_grown * fminf(tree->twigs - (float)index, 1);
     seen->gain = tree->light.cones ? cone_tree_light_gain(&tree->light, middle_m) : 1;
     seen->mix = mix_at(picture, tree, twig, camera_m[2], tree->scale * away);
-    seen->axis_shine = 0;
-    struct needles_sight plain = seen->plant_sight;
-    plain.exponent = -1;
-    if (twig->twig->axis_radius_m > 0)
-        seen->axis_shine = needles_reflect(twig->axis, &plain).diffuse;
     return true;
 }
 
@@ -262,27 +254,115 @@ static size_t whole_emit(const struct cone_picture *picture, const struct cone_t
     return 1;
 }
 
+/* By bake/needles.h. */
+static void shade(const struct cone_picture *picture, const struct cone_tree *tree,
+                  struct cone_twig_view *seen)
+{
+    static const float axis[3] = {0, 0, 1};
+    const struct needles_twig shape = cone_twig_shape(seen->twig);
+    /* needles are solid: two-sided leaves are others */
+    struct needles_sight *sight = &seen->sight;
+    const struct needles_sight plain = needles_sight_of(sight->light, sight->eye, -1, false);
+    seen->axis_shine = needles_reflect(axis, &plain).diffuse;
+    seen->disc = (struct needles_disc){.cosine = 1};
+    if (!seen->twig->twig->cones_count)
+        return;
+    *sight = needles_sight_of(sight->light, sight->eye, sight->exponent, false);
+    seen->halves = cone_halves_of(picture->shaders, &shape, sight);
+    view_disc(picture, tree, seen);
+}
+
+static void lane_fill(const struct cone_twig_view *seen, size_t lane, struct cone_lanes_job *job)
+{
+    const struct cone_twig *twig = seen->twig;
+    const struct conifer_twig *from = twig->twig;
+    job->sine[lane] = twig->sine;
+    job->cosine[lane] = twig->cosine;
+    job->area_m2[lane] = (float)from->cones_count * (float)from->needles_count *
+                         from->needle_radius_m * from->needle_length_m;
+    job->radius_m[lane] = twig->radius_m;
+    job->length_m[lane] = twig->length_m;
+    for (int i = 0; i < 3; i++) {
+        job->light[i][lane] = seen->sight.light[i];
+        job->eye[i][lane] = seen->sight.eye[i];
+    }
+}
+
+static void lane_take(const struct cone_lanes_job *job, size_t lane, struct cone_twig_view *seen)
+{
+    for (int half = 0; half < 2; half++) {
+        seen->halves.seen[half] = job->seen[half][lane];
+        seen->halves.shade[half] =
+            (struct needles_shade){job->diffuse[half][lane], job->specular[half][lane], 0};
+        seen->disc.eye[half] = job->depths[half][lane];
+        seen->disc.light[half] = job->light_depths[half][lane];
+        seen->lit.seen[half] = job->disc_seen[half][lane];
+        seen->lit.lit[half] = job->disc_lit[half][lane];
+    }
+    seen->disc.cosine = job->disc_cosine[lane];
+    seen->disc.sine = job->disc_sine[lane];
+    seen->axis_shine = job->axis_diffuse[lane];
+    seen->needles_m2 = needles_of(seen->twig->twig, seen->halves.seen);
+}
+
+static size_t strips_of(const struct cone_picture *picture, const struct cone_tree *tree,
+                        const struct cone_twig_view *seen, const struct cone_beam *beam,
+                        struct cone_strip *strips)
+{
+    size_t count = 0;
+    if (!seen->twig->twig->cones_count)
+        return axis_emit(picture, tree, seen, 1, strips);
+    if (seen->mix.shares[CONE_TWIG] > 0)
+        count += whole_emit(picture, tree, seen, strips);
+    if (seen->mix.shares[CONE_TWIG] < 1)
+        count += axis_emit(picture, tree, seen, 1 - seen->mix.shares[CONE_TWIG], strips + count);
+    if (seen->mix.shares[CONE_CONE] > 0)
+        count += cone_cones_emit(picture, tree, seen, beam, strips + count);
+    if (seen->mix.shares[CONE_NEEDLE] > 0)
+        count += cone_needles_emit(picture, tree, seen, beam, strips + count);
+    return count;
+}
+
 size_t cone_twig_emit(const struct cone_picture *picture, const struct cone_tree *tree,
                       size_t index, const struct cone_beam *beam, struct cone_strip *strips)
 {
     struct cone_twig_view seen;
-    size_t count = 0;
     if (!view_of(picture, tree, index, &seen))
         return 0;
-    if (!seen.twig->twig->cones_count) {
-        seen.disc.light[0] = seen.disc.light[1] = 0;
-        return axis_emit(picture, tree, &seen, 1, strips);
+    shade(picture, tree, &seen);
+    return strips_of(picture, tree, &seen, beam, strips);
+}
+
+void cone_twigs_emit(const struct cone_picture *picture, const struct cone_tree *tree, size_t first,
+                     size_t count, struct cone_strip *strips, size_t ends[CONE_LANES])
+{
+    struct cone_twig_view seen[CONE_LANES];
+    bool drawn[CONE_LANES];
+    struct cone_lanes_job job;
+    size_t end = 0, lanes = 0;
+    for (size_t k = 0; k < count; k++) {
+        drawn[k] = view_of(picture, tree, first + k, &seen[k]);
+        if (drawn[k] && picture->shade)
+            lane_fill(&seen[k], lanes++, &job);
+        else if (drawn[k])
+            shade(picture, tree, &seen[k]);
     }
-    const struct needles_twig shape = cone_twig_shape(seen.twig);
-    seen.halves = cone_halves_of(picture->shaders, &shape, &seen.sight);
-    view_disc(picture, tree, &seen);
-    if (seen.mix.shares[CONE_TWIG] > 0)
-        count += whole_emit(picture, tree, &seen, strips);
-    if (seen.mix.shares[CONE_TWIG] < 1)
-        count += axis_emit(picture, tree, &seen, 1 - seen.mix.shares[CONE_TWIG], strips + count);
-    if (seen.mix.shares[CONE_CONE] > 0)
-        count += cone_cones_emit(picture, tree, &seen, beam, strips + count);
-    if (seen.mix.shares[CONE_NEEDLE] > 0)
-        count += cone_needles_emit(picture, tree, &seen, beam, strips + count);
-    return count;
+    if (lanes > 0) {
+        const struct cone_twig_view *last = &seen[0];
+        for (size_t k = 0; k < count; k++)
+            last = drawn[k] ? &seen[k] : last;
+        for (size_t lane = lanes; lane < CONE_LANES; lane++)
+            lane_fill(last, lane, &job);
+        job.exponent = last->sight.exponent;
+        job.shaded = tree->light.cones;
+        picture->shade(&job);
+    }
+    lanes = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (drawn[k] && picture->shade)
+            lane_take(&job, lanes++, &seen[k]);
+        if (drawn[k])
+            end += strips_of(picture, tree, &seen[k], NULL, strips + end);
+        ends[k] = end;
+    }
 }

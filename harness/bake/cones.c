@@ -5,6 +5,15 @@
 #include <math.h>
 #include <string.h>
 
+static void (*shade_of(const char *isa))(struct cone_lanes_job *job)
+{
+    struct cone_isa isas[2];
+    size_t count = cone_isas(isas), chosen = isa ? 0 : count - 1;
+    for (size_t i = 0; i < count && isa; i++)
+        chosen = strcmp(isas[i].name, isa) ? chosen : i;
+    return isas[chosen].shade;
+}
+
 enum status cones_prepare(struct workspace *workspace, const struct scene *scene,
                           const struct cones_options *options, struct cones **result)
 {
@@ -29,6 +38,8 @@ enum status cones_prepare(struct workspace *workspace, const struct scene *scene
     if (status)
         return status;
     cones->cull = cull_create(arena, scene, bounds);
+    if (!options->is_naive && options->shaders == CONE_EXACT)
+        cones->shade = shade_of(options->isa);
     if (options->is_naive)
         cones->naive = cones_naive_create(arena, cones);
     else
@@ -49,6 +60,7 @@ static struct cone_picture picture_of(const struct workspace *workspace, const s
         .fog_density_per_m = effects & EFFECT_FOG ? scene->fog.density_per_m : 0,
         .choice = cones->options.choice,
         .shaders = cones->options.shaders,
+        .shade = cones->shade,
         .plants = cones->plants,
         .lights = cones->lights,
     };

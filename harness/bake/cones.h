@@ -12,6 +12,7 @@ struct cones_options {
     struct cone_choice choice;
     enum cone_shaders shaders;
     bool is_naive;
+    const char *isa; /* a name of cone_isas(); NULL: the last */
     bool shadows;
     bool edges; /* relief is cut into layers where its edge crosses a pixel */
     float stop; /* a pixel is closed when it lets through no more */

@@ -164,18 +164,22 @@ static void job_emit(const struct cones *cones, const struct cone_picture *pictu
     const struct cone_tree *tree = &fast->trees[job->tree];
     const size_t twigs = (size_t)ceilf(tree->twigs);
     size_t to = job->place;
-    for (size_t item = job->first; item < job->last; item++) {
-        size_t from = to;
-        size_t end =
-            from + (item < twigs
-                        ? cone_twig_emit(picture, tree, item, NULL, &fast->strips[from])
-                        : cone_bark_emit(picture, tree, item - twigs, &fast->strips[from]));
-        for (; from < end; from++)
+    for (size_t item = job->first; item < job->last;) {
+        const size_t end = job->last < twigs ? job->last : twigs;
+        size_t count = 1, ends[CONE_LANES], from = to;
+        if (item < twigs) {
+            count = end - item < CONE_LANES ? end - item : CONE_LANES;
+            cone_twigs_emit(picture, tree, item, count, &fast->strips[from], ends);
+        } else {
+            ends[0] = cone_bark_emit(picture, tree, item - twigs, &fast->strips[from]);
+        }
+        for (const size_t after = from + ends[count - 1]; from < after; from++)
             if (rect_of(cones->canvas, &fast->strips[from], &fast->rects[to])) {
                 if (to != from)
                     fast->strips[to] = fast->strips[from];
                 to++;
             }
+        item += count;
     }
     job->count = (uint32_t)(to - job->place);
 }

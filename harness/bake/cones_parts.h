@@ -14,6 +14,7 @@ struct cones {
     struct cone_plant **plants;
     struct cone_lights *lights; /* NULL: no shadows wanted */
     struct cone_canvas *canvas;
+    void (*shade)(struct cone_lanes_job *job); /* NULL: twigs are shaded one by one */
     struct cull *cull;
     struct cones_fast *fast;
     struct cones_naive *naive; /* one of both is NULL */
