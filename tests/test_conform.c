@@ -103,6 +103,14 @@ static void test_conform__a_plugin_that_keeps_the_contract_passes(void **unused)
     arena_destroy(arena);
 }
 
+static void test_conform__methods_of_slices_honour_a_trees_stretch(void **unused)
+{
+    (void)unused;
+    static const struct checks stretch = {"^stretch$", 1};
+    all_pass("texels", stretch);
+    all_pass("jakulin", stretch);
+}
+
 static void test_conform__each_way_to_misbehave_is_told_apart(void **unused)
 {
     (void)unused;
@@ -117,6 +125,8 @@ static void test_conform__each_way_to_misbehave_is_told_apart(void **unused)
          "does not claim fog, but draws it"},
         {"lies-treeless", "one-tree", STATUS_NONCONFORMING, STATUS_NONCONFORMING,
          "says that it draws no trees, but coverage is"},
+        {"lies-stretch", "stretch", STATUS_NONCONFORMING, STATUS_NONCONFORMING,
+         "stretch 2: coverage is"},
         {"lies-host", "memory", STATUS_NONCONFORMING, STATUS_NONCONFORMING, "the process grew by"},
         {"lies-device", "memory", STATUS_NONCONFORMING, STATUS_NONCONFORMING,
          "made without gl_buffer, gl_texture"},
@@ -263,6 +273,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_conform__the_registered_methods_keep_the_contract),
         cmocka_unit_test(test_conform__a_plugin_that_keeps_the_contract_passes),
+        cmocka_unit_test(test_conform__methods_of_slices_honour_a_trees_stretch),
         cmocka_unit_test(test_conform__each_way_to_misbehave_is_told_apart),
         cmocka_unit_test(test_conform__every_check_of_pictures_can_fail),
         cmocka_unit_test(test_conform__each_lie_about_a_tally_is_told_apart),

@@ -70,6 +70,36 @@ static enum status check_user_mesh(struct subject *subject)
     return status ? status : one_tree(subject, path);
 }
 
+/* Twice and half as high as the plant; from so far that all of it is seen. */
+static enum status check_stretch(struct subject *subject)
+{
+    static const double stretches[2] = {2, 0.5};
+    if (subject_is_treeless(subject))
+        return STATUS_OK;
+    for (int i = 0; i < 2; i++) {
+        struct trial_request request = {.world = {.trees = 1, .stretch = stretches[i]},
+                                        .format = TARGET_RGBA16F,
+                                        .lod = LOD_HIGH};
+        struct trial trial;
+        struct view view;
+        struct frame *frame;
+        double middle_m = 10 * stretches[i];
+        subject_say(subject, "stretch %g", stretches[i]);
+        enum status status = trial_open(subject, &request, &trial);
+        if (status)
+            return status;
+        world_view(trial.scene, &trial.world, (double[3]){15, middle_m + 7, 60},
+                   (double[3]){0, middle_m, 0}, &view);
+        status = trial_draw(&trial, &view, &frame);
+        if (!status)
+            status = trial_covers(&trial, frame, &view);
+        trial_close(&trial);
+        if (status)
+            return error_context(subject->error, "stretch %g", stretches[i]);
+    }
+    return STATUS_OK;
+}
+
 /* Mean luminance where both pictures show plants. */
 static double plant_luminance(const struct frame *frame, const struct frame *a,
                               const struct frame *b)
@@ -231,6 +261,8 @@ const struct check checks_pictures[] = {
      check_one_tree, false},
     {"user-mesh", "the same of a tree from an OBJ file in another unit and with z up",
      check_user_mesh, false},
+    {"stretch", "a tree twice and half as high as its plant covers what the reference's does",
+     check_stretch, false},
     {"effects", "claimed effects act as in the reference, others do not", check_effects, false},
     {"lod", "the error does not grow with the level of detail", check_lod, false},
     {NULL, NULL, NULL, false},

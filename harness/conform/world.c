@@ -181,10 +181,10 @@ static void forest_make(struct arena *arena, struct scene *scene, const struct w
         tree->position_m[2] = scale * (float)(spacing_m * ((double)(k / side) - middle));
         tree->rotation_rad = 6.2831853f * random_float(&random);
         tree->scale = scale * (0.9f + 0.2f * random_float(&random));
-        tree->stretch = 1;
+        tree->stretch = world->stretch > 0 ? (float)world->stretch : 1;
     }
     scene->forest_half_m = scale * (float)(0.5 * spacing_m * (double)side);
-    scene->tree_reach_m = scale * 25;
+    scene->tree_reach_m = scale * 25 * fmaxf(1, (float)world->stretch);
 }
 
 /* Flat, wide enough for the forest. */

@@ -8,6 +8,7 @@
 struct world {
     size_t trees;
     double scale;            /* of every length; 0: 1 */
+    double stretch;          /* of every tree; 0: 1 */
     double spacing_m;        /* between trees before scaling; 0: 12 */
     int width_px, height_px; /* 0: 64 x 48 */
     const char *file;        /* of a scene; NULL: the world is made here */

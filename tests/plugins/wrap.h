@@ -22,7 +22,7 @@ static inline enum status wrap_draw(struct workspace *workspace, void *state,
 
 #define WRAP_TRAITS (EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG)
 /* NAME_method of this file; its functions are named by the slots. */
-#define WRAP_METHOD(id, given_name, given_traits)                                                  \
+#define WRAP_METHOD_SUPPORTED(id, given_name, given_traits, given_supported)                       \
     extern const struct method id##_method;                                                        \
     const struct method id##_method = {                                                            \
         .abi = METHOD_ABI,                                                                         \
@@ -30,8 +30,11 @@ static inline enum status wrap_draw(struct workspace *workspace, void *state,
         .summary = "cross quads that misbehave",                                                   \
         .source = "this project",                                                                  \
         .traits = given_traits,                                                                    \
+        .supported = given_supported,                                                              \
         .prepare = prepare,                                                                        \
         .draw = draw,                                                                              \
     }
+#define WRAP_METHOD(id, given_name, given_traits)                                                  \
+    WRAP_METHOD_SUPPORTED(id, given_name, given_traits, method_needs_no_stretch)
 
 #endif
