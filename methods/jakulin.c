@@ -1,19 +1,23 @@
 /* jakulin: the trunk as polygons, the foliage as few slices along vertical directions, of which the
  * two nearest to the eye are mixed. Jakulin 2000; Senegas 2001, 3.1.
  *
- * Departure: a stack's weight multiplies the optical depth of its slices, not their opacity:
- * between two directions the crown stays as dense as along one. */
+ * Departures: a stack's weight multiplies the optical depth of its slices, not their opacity:
+ * between two directions the crown stays as dense as along one. And a third stack is horizontal
+ * (above=stack): seen from straight above vertical slices are lines. */
 #include "bake/stack.h"
 #include "bake/triangles.h"
 
 struct options {
-    int directions, slices, resolution, order, cut, samples;
+    int directions, above, slices, resolution, order, cut, samples;
     float criterion, texel, error_px, near;
+    bool oblique;
 };
 
 /* clang-format off */
 static const struct option table[] = {
     OPTION(struct options, directions, 4, 2, 8, "", "vertical directions that slices are made along"),
+    OPTION_WORD(struct options, above, 1, "none|stack",
+                "stack: horizontal slices, too, whose share grows with the view's elevation; none: as published"),
     OPTION(struct options, slices, 8, 1, 32, "", "slices along each of them"),
     OPTION(struct options, resolution, 256, 8, 512, "px", "texels along a picture's longer side"),
     OPTION_WORD(struct options, order, 0, "mixed|exact",
@@ -30,6 +34,8 @@ static const struct option table[] = {
            "8 times how far bark may move at lod=auto; twice as much at intermediate, four times at low"),
     OPTION(struct options, near, 1, 0, 16, "radii",
            "trees nearer to the eye are drawn by their triangles; 0: none"),
+    OPTION(struct options, oblique, 1, 0, 1, "",
+           "slices seen at a slant hide as much as the longer way through them"),
     OPTION_END,
 };
 /* clang-format on */
@@ -92,15 +98,16 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
 {
     const struct options *options = values;
     struct state *state = *result = ARENA_NEW(workspace->arena, struct state);
-    float(*directions)[3] = arena_alloc(workspace->arena, DIRECTIONS_MOST, sizeof *directions);
+    float(*directions)[3] = arena_alloc(workspace->arena, DIRECTIONS_MOST + 1, sizeof *directions);
     for (int i = 0; i < options->directions; i++) {
         float angle = (float)i * (float)M_PI / (float)options->directions;
         directions[i][0] = sinf(angle);
         directions[i][1] = 0;
         directions[i][2] = cosf(angle);
     }
+    directions[options->directions][1] = 1;
     struct stack_request request = {
-        .bake = {.directions_count = (size_t)options->directions,
+        .bake = {.directions_count = (size_t)(options->directions + options->above),
                  .directions = (const float(*)[3])directions,
                  .count = options->slices,
                  .samples = options->samples,
@@ -111,8 +118,10 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .rectangles = true,
         .rough = true,
         .facing = true,
+        .oblique = options->oblique,
         .near_radii = options->near,
         .mix = options->order ? STACK_CROSSED : STACK_MIXED,
+        .above = options->above,
         .criterion_px = options->criterion,
         .texel_px = options->texel,
     };

@@ -139,6 +139,7 @@ static const struct {
     {"polygons", "sift=1", 0.01},
     {"polygons", "sift=0", 0.01},
     {"shaded-texels", "slices=64,samples=2,criterion=0", 0.05},
+    {"texels", "slices=64,samples=2,criterion=none,turns=9", 0.05},
     {"ray-texels", "resolution=64", 0.06},
     {"ray-texels-gl", "resolution=64,step=0.5", 0.06},
 };
@@ -161,9 +162,74 @@ static void test_methods__a_stretched_ball_is_lit_as_its_ellipsoid(void **state)
         }
 }
 
+/* ---- Their shadows. ---- */
+
+enum { BOX_PX = 4, BOXES = TREE_WIDTH / BOX_PX };
+
+/* How much light a shadow takes from boxes of pixels that show ground alone. */
+static void shadow_of(const float *lit, const float *shaded, const float *truth,
+                      double boxes[BOXES * BOXES])
+{
+    memset(boxes, 0, BOXES * BOXES * sizeof *boxes);
+    for (int y = 0; y < TREE_HEIGHT; y++)
+        for (int x = 0; x < TREE_WIDTH; x++) {
+            int at = 4 * (y * TREE_WIDTH + x);
+            if (truth[at + 3] < 0.01f)
+                boxes[y / BOX_PX * BOXES + x / BOX_PX] +=
+                    (double)lit[at + 1] - (double)shaded[at + 1];
+        }
+}
+
+static void test_ray_texels__the_shadow_of_a_stretched_tree_is_as_traced(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct arena *arena = arena_create(0);
+        struct plant *plant = plant_from_mesh(arena, "lopsided", tree_mesh(arena, 400));
+        struct scene *scene = tree_scene(arena, plant, 1, 0.4f);
+        struct terrain *terrain = &scene->terrain;
+        double boxes[2][BOXES * BOXES], wanted = 0, has = 0, off = 0;
+        const float *frames[2][2];
+        scene->instances[0].rotation_rad = 1;
+        scene->instances[0].stretch = stretches[k];
+        scene->tree_reach_m = 16;
+        terrain->samples_x = terrain->samples_z = 2;
+        terrain->size_x_m = terrain->size_z_m = 200;
+        terrain->heights_m = ARENA_ARRAY(arena, float, 4);
+        terrain->normals = arena_alloc(arena, 4, sizeof *terrain->normals);
+        for (int i = 0; i < 4; i++)
+            terrain->normals[i][1] = 1;
+        for (int i = 0; i < 3; i++)
+            terrain->albedo[i] = 0.4f;
+        struct view view = tree_view(scene, 1.5f, 0.7f, 100, 34);
+        for (int shaded = 0; shaded < 2; shaded++) {
+            unsigned effects = EFFECT_TWO_SIDED | (shaded ? EFFECT_SUN_SHADOWS : 0);
+            struct setting setting = {.method = "ray-texels",
+                                      .options = "resolution=64",
+                                      .lod = LOD_HIGH,
+                                      .effects = effects,
+                                      .format = TARGET_RGBA32F};
+            frames[0][shaded] = tree_reference(arena, scene, effects, &view)->rgba;
+            frames[1][shaded] = picture_draw(arena, scene, &view, &setting).rgba;
+        }
+        for (int m = 0; m < 2; m++)
+            shadow_of(frames[m][0], frames[m][1], frames[0][0], boxes[m]);
+        for (int b = 0; b < BOXES * BOXES; b++) {
+            wanted += boxes[0][b];
+            has += boxes[1][b];
+            off += fabs(boxes[1][b] - boxes[0][b]);
+        }
+        if (!(fabs(has / wanted - 1) < 0.1) || !(off / wanted < 0.3))
+            fail_msg("stretch %g: %.3f of the shadow, %.3f of it elsewhere", (double)stretches[k],
+                     has / wanted, off / wanted);
+        arena_destroy(arena);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ray_texels__the_shadow_of_a_stretched_tree_is_as_traced),
         cmocka_unit_test(test_reference__a_stretched_ball_is_lit_as_its_ellipsoid),
         cmocka_unit_test(test_methods__a_stretched_ball_is_lit_as_its_ellipsoid),
     };

@@ -39,6 +39,9 @@ struct slices_light {
     float sun_radiance[3], ambient[3];
     bool two_sided;
     bool from_behind; /* as seen from there */
+    /* Of the tree, whose normals are diag(1, 1 / stretch, 1) N over their length; 0 is 1. Else
+     * directions are axes. */
+    float stretch;
 };
 
 struct slices_request {

@@ -232,7 +232,7 @@ static void bake_rows(const struct slices_sight *sight, const uint32_t *list, si
 }
 
 /* A stack's normals face the front: seen from behind, leaves' are negated and bark's mirrored, or
- * the sun is. */
+ * the sun is. Suns are squeezed as normals are to be: N.(D L) = (D N).L. */
 static void turn_suns(struct arena *arena, struct slices_sight *sight)
 {
     const struct slices_request *request = sight->bake->request;
@@ -240,9 +240,12 @@ static void turn_suns(struct arena *arena, struct slices_sight *sight)
     sight->suns = arena_alloc(arena, request->lights_count, sizeof *sight->suns);
     for (size_t n = 0; n < request->lights_count; n++) {
         const struct slices_light *light = &request->lights[n];
-        float along = slices_dot(light->sun_direction, toward);
+        float squeezed[3];
+        memcpy(squeezed, light->sun_direction, sizeof squeezed);
+        squeezed[1] /= light->stretch > 0 ? light->stretch : 1;
+        float along = slices_dot(squeezed, toward);
         for (int k = 0; k < 3; k++) {
-            float sun = light->sun_direction[k];
+            float sun = squeezed[k];
             sight->suns[n][0][k] = light->from_behind ? -sun : sun;
             sight->suns[n][1][k] = light->from_behind ? sun - 2 * along * toward[k] : sun;
         }

@@ -135,8 +135,15 @@ static float sun_share(const struct colored_voxel *voxel, const struct slices_li
     for (int i = 0; i < 3; i++)
         eye[i] = light->from_behind ? -toward[i] : toward[i];
     normal_seen(voxel, eye, normal);
-    float along = dot3(normal, light->sun_direction);
     float scatter = fmaxf(1 - sqrtf(dot3(normal, normal)), 0);
+    if (light->stretch > 0 && light->stretch != 1) { /* a normal of the same length, turned */
+        float length = sqrtf(dot3(normal, normal));
+        normal[1] /= light->stretch;
+        float scale = length / fmaxf(sqrtf(dot3(normal, normal)), 1e-6f);
+        for (int i = 0; i < 3; i++)
+            normal[i] *= scale;
+    }
+    float along = dot3(normal, light->sun_direction);
     float leaf = light->two_sided ? fabsf(along) + scatter / 2 : fmaxf(along, 0) + scatter / 4;
     float bark = fmaxf(along, 0) + scatter / 4;
     return voxel->leaf * leaf + (1 - voxel->leaf) * bark;

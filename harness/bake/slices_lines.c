@@ -65,6 +65,13 @@ static bool slab_open(const struct slices_column *column, int slab)
     return column->cells[slab].line != column->line;
 }
 
+/* Of a normal as a tree's stretch turns it, before it is made 1 long again. */
+static float tall_length(const float normal[3], float stretch)
+{
+    float y = normal[1] / stretch;
+    return sqrtf(normal[0] * normal[0] + y * y + normal[2] * normal[2]);
+}
+
 /* Adds the radiance under every light. */
 static void slab_light(const struct slices_sight *sight, const struct look *look, float (*lit)[3])
 {
@@ -72,6 +79,8 @@ static void slab_light(const struct slices_sight *sight, const struct look *look
     for (size_t n = 0; n < request->lights_count; n++) {
         const struct slices_light *light = &request->lights[n];
         float d = slices_dot(look->normal, sight->suns[n][!look->leaf]);
+        if (light->stretch > 0 && light->stretch != 1)
+            d /= tall_length(look->normal, light->stretch);
         d = look->leaf && light->two_sided ? fabsf(d) : fmaxf(d, 0);
         for (int k = 0; k < 3; k++)
             lit[n][k] += look->color[k] * (d * light->sun_radiance[k] + light->ambient[k]);

@@ -8,6 +8,11 @@
 
 /* A batch is what is uploaded at a time. */
 enum { BATCH_PARTS = 1 << 16, BATCH_QUADS = 1 << 18, INDEXED_QUADS = 1 << 14, CORNERS = 4 };
+enum {
+    TREE_QUADS = STACK_CROSSED_MOST > PARTS_MOST *STACK_QUADS_MOST
+                     ? (int)STACK_CROSSED_MOST
+                     : PARTS_MOST *(int)STACK_QUADS_MOST
+};
 
 static GLuint upload_indices(struct gl *gl)
 {
@@ -26,9 +31,10 @@ static enum status stack_program(struct workspace *workspace, struct stack *stac
     const struct stack_request *request = &stack->request;
     struct arena *scratch = arena_create(0);
     const char *defines = arena_printf(
-        scratch, "%s%s%s%s%s%s%s%s%s%s", request->trilinear ? "TRILINEAR 1\n" : "",
+        scratch, "%s%s%s%s%s%s%s%s%s%s%s", request->trilinear ? "TRILINEAR 1\n" : "",
         request->straight ? "STRAIGHT 1\n" : "", request->rough ? "ROUGH 1\n" : "",
         request->interpolate ? "INTERPOLATE 1\n" : "", request->facing ? "FACING 1\n" : "",
+        request->oblique ? "OBLIQUE 1\n" : "",
         request->interpolate || request->smooth || request->mix != STACK_ONE ? "POWER 1\n" : "",
         scene_is_stretched(stack->scene) ? "STRETCHED 1\n" : "",
         request->turns > 0 ? "LIT 1\n" : "", request->ground != GROUND_UPRIGHT ? "BENT 1\n" : "",
@@ -142,10 +148,10 @@ static struct fill fill_behind(const struct stack *stack, const struct view *vie
         if (stack->bends)
             stack_bend_fill(stack, instance, tree, &stack->bends[fill.parts + (size_t)k]);
     }
-    if (stack->request.mix == STACK_CROSSED && count == 2) {
-        fill.quads += stack_crossed_quads(stack, parts, &stack->trees[fill.parts],
+    if (stack->request.mix == STACK_CROSSED) {
+        fill.quads += stack_crossed_quads(stack, parts, count, &stack->trees[fill.parts],
                                           (uint32_t)fill.parts, stack->quads + fill.quads);
-        fill.parts += 2;
+        fill.parts += (size_t)count;
         return fill;
     }
     for (int first = 0, end; first < count; first = end) {
@@ -211,8 +217,7 @@ static void draw_stacks(struct workspace *workspace, const struct stack *stack,
     use_program(workspace, stack, view);
     tally_texels_begin(workspace);
     for (size_t i = first; i < end; i++) {
-        if (fill.parts + PARTS_MOST > BATCH_PARTS ||
-            fill.quads + PARTS_MOST * STACK_QUADS_MOST > BATCH_QUADS) {
+        if (fill.parts + PARTS_MOST > BATCH_PARTS || fill.quads + TREE_QUADS > BATCH_QUADS) {
             draw_batch(workspace, stack, fill);
             fill = (struct fill){0, 0};
         }

@@ -1,5 +1,5 @@
-// Slices of trees as quads (harness/bake/stack.h). TRILINEAR, STRAIGHT, ROUGH, INTERPOLATE, POWER, FOG: as stack_request
-// and the scene have them.
+// Slices of trees as quads (harness/bake/stack.h). TRILINEAR, STRAIGHT, ROUGH, INTERPOLATE, OBLIQUE, POWER, FOG: as
+// stack_request and the scene have them.
 
 #pragma stage vertex
 struct tree {
@@ -18,6 +18,9 @@ flat out float rise;
 #endif
 #ifdef FACING
 flat out vec3 to_eye, toward;
+#endif
+#if defined(OBLIQUE) && !defined(FACING)
+flat out float oblique;
 #endif
 #ifdef FOG
 out vec3 away_m;
@@ -71,6 +74,9 @@ void main()
     to_eye = t.eye.xyz;
     toward = t.toward_array.xyz;
 #endif
+#if defined(OBLIQUE) && !defined(FACING)
+    oblique = min(length(t.eye.xyz) - 1.0, 1.0);
+#endif
 }
 
 #pragma stage fragment
@@ -84,6 +90,9 @@ flat in float rise;  // of normals: 1 / stretch
 #endif
 #ifdef FACING
 flat in vec3 to_eye, toward;
+#endif
+#if defined(OBLIQUE) && !defined(FACING)
+flat in float oblique;  // 1 / cosine - 1
 #endif
 #ifdef FOG
 in vec3 away_m;
@@ -152,13 +161,23 @@ float light_of(vec4 n)
 
 #ifdef FACING
 // How much of its area a leaf turns to the eye, against what it turns to the front of the slices and they to the eye.
-// Of normals that scatter, the root mean square.
+// Of normals that scatter, the root mean square. OBLIQUE: n is the mean of those seen from the front, each weighted by
+// the area that it turns there. With S the mean of N N' over leaves, S toward is along n, and the area turned to e about
+// sqrt(e'S e) (Heitz et al. 2015: SGGX); what n does not tell is taken as the same in all directions across toward. Its
+// weight 0.8 (1 - n.n) is right where all N are n and where they are isotropic (n = 2/3 toward: 4/9); the area is then 1
+// and 1 / cosine, the longer way through the slice.
 float facing_of(vec4 n)
 {
-    float scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0) / 4.5 + 0.01;
     float to_front = dot(n.xyz, toward), turned = dot(n.xyz, to_eye);
+#ifdef OBLIQUE
+    float square = dot(to_eye, to_eye), scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0);
+    float area = sqrt((turned * turned + 0.8 * scatter * (square - 1.0) + 0.01) / (to_front * to_front + 0.01));
+    return mix(sqrt(square), min(area, 3.0), n.w);
+#else
+    float scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0) / 4.5 + 0.01;
     float area = sqrt((turned * turned + scatter * dot(to_eye, to_eye)) / (to_front * to_front + scatter));
     return mix(1.0, min(area, 3.0), n.w);
+#endif
 }
 #endif
 
@@ -171,6 +190,10 @@ void main()
 #ifdef FACING
     float area = facing_of(normal);
     texel *= min(area, 1.0 / max(texel.a, 1e-6));
+#endif
+#if defined(OBLIQUE) && !defined(FACING)
+    // (1 - a)^(q + 1), q in 0..1, by three terms of the series of (1 - a)^q
+    texel *= 1.0 + oblique * (1.0 - texel.a) * (1.0 + 0.5 * (1.0 - oblique) * texel.a);
 #endif
 #ifdef POWER
     // the last 1/256 of transmittance is kept, so that what is opaque can fade, too

@@ -24,7 +24,7 @@ enum stack_ground { GROUND_UPRIGHT, GROUND_BASE, GROUND_PATCH };
  * one:     the one that most faces the eye.
  * mixed:   of vertical ones the two nearest to the eye, weighted by the angle to them, one after
  *          the other though their slices cross (Jakulin 2000).
- * crossed: the same two, the slices of the one cut at those of the other, all of it in order. */
+ * crossed: the same, the slices of the one cut at those of the other, all of it in order. */
 enum stack_mix { STACK_ONE, STACK_MIXED, STACK_CROSSED };
 
 struct stack_request {
@@ -39,20 +39,27 @@ struct stack_request {
     float near_radii;           /* nearer trees are drawn by their triangles; 0: none */
     bool each;                  /* one draw a tree */
     int groups; /* of trees, front to back, saturated pixels closed after each; 0: back to front */
-    int turns;  /* light is baked into the colours for trees turned by so many steps; 0: light in
-                   every fragment */
+    int turns;  /* light is baked into the colours for trees turned by so many steps, and for every
+                   step of their stretch; 0: light in every fragment */
     enum stack_ground ground;
-    bool rough;             /* normals that scatter in a texel spread its light */
-    bool facing;            /* leaves show the area that they turn to the eye */
-    bool interpolate;       /* more slices than there are, between two each */
-    bool smooth;            /* no jump between numbers of slices, stacks and distant pictures */
-    float criterion_px;     /* C2: parallax between two slices, px; 0: without it */
+    bool rough;         /* normals that scatter in a texel spread its light */
+    bool facing;        /* leaves show the area that they turn to the eye */
+    bool oblique;       /* slices are as dense as the way of a slanted ray through them is long */
+    bool interpolate;   /* more slices than there are, between two each */
+    bool smooth;        /* no jump between numbers of slices, stacks and distant pictures */
+    float criterion_px; /* C2: parallax between two slices, px; 0: without it */
     float criterion_texels; /* C1: gap between two slices along them, texels; 0: without it */
     float texel_px;         /* mip level: texels are about this large on the picture */
     float distant_px;       /* at lod=auto, where the largest tree is smaller, trees are pictures
                                drawn by the CPU; 0: none is. Not on GROUND_BASE and GROUND_PATCH */
     enum stack_mix mix;
+    bool above; /* mixed, crossed: the last direction is +y, its stack's share of a tree the eye's
+                   elevation over a right angle */
 };
+
+/* Steps of a tree's stretch that light is baked for, as those of turns: a quarter of an octave,
+ * from 1/8 to 8. */
+enum { STACK_TALLS = 25 };
 
 /* Every level halves the number of slices of the one before. */
 enum { STACK_LEVELS = 10 };
@@ -87,7 +94,9 @@ struct stack {
     const struct scene *scene;
     struct stack_request request;
     size_t plants_count, arrays_count;
-    struct stack_plant *plants; /* species x turns (or 1) */
+    size_t steps_count;         /* of turns and of stretches; 1 where light is not baked in */
+    float *stretches;           /* species x STACK_TALLS: what those are baked for; 0: no tree */
+    struct stack_plant *plants; /* species x steps */
     struct stack_array *arrays;
     struct backdrop *backdrop;
     struct cull *cull;

@@ -269,44 +269,25 @@ static struct cull_bound bound_of(const struct stack_plant *plant, size_t sides)
     return (struct cull_bound){0.5f * (low + high), hypotf(across, 0.5f * (high - low))};
 }
 
-/* The sun as the plant has it whose rotation is a step of so many turns, seen from both sides. */
-static void turned_lights(const struct workspace *workspace, const struct stack *stack, int step,
-                          struct slices_light lights[2])
-{
-    const struct scene *scene = stack->scene;
-    double angle = 2 * M_PI * step / stack->request.turns;
-    float c = (float)cos(angle), s = (float)sin(angle);
-    const float *sun = stack->sun_direction;
-    for (int behind = 0; behind < 2; behind++) {
-        lights[behind] = (struct slices_light){
-            .sun_direction = {sun[0] * c - sun[2] * s, sun[1], sun[0] * s + sun[2] * c},
-            .two_sided = workspace->effects & EFFECT_TWO_SIDED,
-            .from_behind = behind};
-        memcpy(lights[behind].sun_radiance, scene->sun.radiance, sizeof scene->sun.radiance);
-        if (workspace->effects & EFFECT_AMBIENT)
-            memcpy(lights[behind].ambient, scene->ambient, sizeof scene->ambient);
-    }
-}
-
 /* The slices of one plant (species and step of rotation), a pyramid a direction. */
 static enum status plant_slices(struct workspace *workspace, struct arena *scratch,
                                 const struct stack *stack, size_t index, struct pyramid *pyramids,
                                 float *texel_m)
 {
     const struct slices_request *all = &stack->request.bake;
-    int turns = stack->request.turns;
-    struct plant *plant = stack->scene->species[turns ? index / (size_t)turns : index].plant;
+    struct plant *plant = stack->scene->species[index / stack->steps_count].plant;
     struct slices_light lights[2];
     struct slices_request whole = *all;
     float longest_m = 0;
-    if (turns)
-        turned_lights(workspace, stack, (int)(index % (size_t)turns), lights);
+    bool lit = stack->request.turns > 0;
+    if (lit)
+        stack_lights(workspace, stack, index, lights);
     enum status status = size_of(workspace, scratch, plant, &stack->request, &longest_m, &whole);
     for (size_t d = 0; d < all->directions_count && status == STATUS_OK; d++) {
         struct slices_request one = *all;
         one.directions_count = 1;
         one.directions = all->directions + d;
-        one.lights_count = turns ? 2 : 0;
+        one.lights_count = lit ? 2 : 0;
         one.lights = lights;
         status = size_of(workspace, scratch, plant, &stack->request, &longest_m, &one);
         if (status == STATUS_OK)
@@ -331,21 +312,6 @@ static void plant_plan(struct arena *arena, struct stack *stack, const struct py
         plant->bound.radius_m *= 2;
 }
 
-static size_t plant_index(const struct stack *stack, const struct instance *instance)
-{
-    int turns = stack->request.turns;
-    if (turns == 0)
-        return instance->species;
-    double share = instance->rotation_rad / (2 * M_PI);
-    long step = lround((share - floor(share)) * turns) % turns;
-    return instance->species * (size_t)turns + (size_t)step;
-}
-
-const struct stack_plant *stack_plant_of(const struct stack *stack, const struct instance *instance)
-{
-    return &stack->plants[plant_index(stack, instance)];
-}
-
 /* Bakes what has trees; plans and makes the textures the first time. */
 static enum status bake_all(struct workspace *workspace, struct stack *stack, bool first)
 {
@@ -355,7 +321,7 @@ static enum status bake_all(struct workspace *workspace, struct stack *stack, bo
     bool *wanted = ARENA_ARRAY(scratch, bool, stack->plants_count);
     enum status status = STATUS_OK;
     for (size_t i = 0; i < stack->scene->instances_count; i++)
-        wanted[plant_index(stack, &stack->scene->instances[i])] = true;
+        wanted[stack_plant_index(stack, &stack->scene->instances[i])] = true;
     for (size_t i = 0; i < stack->plants_count && status == STATUS_OK; i++) {
         float texel_m;
         if (!wanted[i])
@@ -376,8 +342,8 @@ static enum status bake_all(struct workspace *workspace, struct stack *stack, bo
 enum status stack_bake(struct workspace *workspace, struct stack *stack)
 {
     struct view view;
-    size_t turns = stack->request.turns > 0 ? (size_t)stack->request.turns : 1;
-    stack->plants_count = stack->scene->species_count * turns;
+    stack_steps(workspace, stack);
+    stack->plants_count = stack->scene->species_count * stack->steps_count;
     stack->plants = ARENA_ARRAY(workspace->arena, struct stack_plant, stack->plants_count);
     stack->arrays = ARENA_ARRAY(workspace->arena, struct stack_array,
                                 stack->plants_count * stack->request.bake.directions_count);

@@ -9,7 +9,15 @@ enum status stack_bake(struct workspace *workspace, struct stack *stack);
 /* Bakes a moved sun into the colours anew; does nothing where it has not moved or is not baked. */
 enum status stack_relight(struct workspace *workspace, struct stack *stack,
                           const float sun_direction[3]);
-/* The slices of a tree's species, of the nearest step of its rotation. */
+/* The steps that light is baked for: how many, and the stretches of the scene's trees. */
+void stack_steps(struct workspace *workspace, struct stack *stack);
+/* Which of stack->plants a tree is. */
+size_t stack_plant_index(const struct stack *stack, const struct instance *instance);
+/* The sun that is baked into one of stack->plants, seen from the front and from behind. */
+void stack_lights(const struct workspace *workspace, const struct stack *stack, size_t index,
+                  struct slices_light lights[2]);
+/* The slices of a tree's species, of the nearest steps of its rotation and stretch.
+ */
 const struct stack_plant *stack_plant_of(const struct stack *stack,
                                          const struct instance *instance);
 
@@ -76,10 +84,12 @@ size_t stack_quads(const struct stack *stack, const struct stack_part *parts, in
 bool stack_quad_at(const struct stack *stack, const struct stack_part *part,
                    const struct stack_tree *tree, float place, struct stack_quad *quad);
 
-/* Quads of a tree of two vertical parts, farthest first: those of the first are cut where they meet
- * slices of the second. At most STACK_QUADS_MOST, as long as (n + 1) (m + 1) is not above it. */
-size_t stack_crossed_quads(const struct stack *stack, const struct stack_part parts[2],
-                           const struct stack_tree trees[2], uint32_t first_tree,
+/* Quads of a tree of one or two vertical parts and, last, perhaps a horizontal one, farthest first:
+ * slices are cut where they meet those of a later part. At most STACK_CROSSED_MOST, as long as no
+ * part has more than STACK_CROSSED_SLICES. */
+enum { STACK_CROSSED_SLICES = 32, STACK_CROSSED_MOST = 36 * 1024 };
+size_t stack_crossed_quads(const struct stack *stack, const struct stack_part *parts, int count,
+                           const struct stack_tree *trees, uint32_t first_tree,
                            struct stack_quad *quads);
 
 #endif

@@ -75,8 +75,9 @@ static void best_sides(const struct stack *stack, const struct stack_plant *plan
                        const float eye[3], const float forward[3], float stretch,
                        struct seen best[2])
 {
+    size_t count = stack->request.bake.directions_count - (stack->request.above ? 1 : 0);
     best[0] = best[1] = (struct seen){.side = plant->sides, .cosine = -1};
-    for (size_t d = 0; d < stack->request.bake.directions_count; d++) {
+    for (size_t d = 0; d < count; d++) {
         struct seen seen = see(&plant->sides[d], eye, forward, stretch, plant->bound.radius_m);
         if (seen.cosine > best[0].cosine) {
             best[1] = best[0];
@@ -188,21 +189,30 @@ int stack_parts(const struct stack *stack, const struct view *view, enum lod lod
         away[i] = (view->eye_m[i] - instance->position_m[i]) / instance->scale;
     to_plant_squeezed(instance, away, eye);
     to_plant_squeezed(instance, view->forward, forward);
-    struct seen best[2];
+    struct seen best[3];
+    float shares[3] = {1, 0, 0};
     best_sides(stack, plant, eye, forward, instance->stretch, best);
     focal *= fmaxf(1, instance->stretch); /* a metre of the plant appears at most so large */
-    float other = 0;
     if (stack->request.smooth && best[1].cosine >= 0)
-        other = fmaxf(0, 0.5f - (best[0].cosine - best[1].cosine) * STACK_BAND);
+        shares[1] = fmaxf(0, 0.5f - (best[0].cosine - best[1].cosine) * STACK_BAND);
     if (stack->request.mix != STACK_ONE && best[1].cosine >= 0)
-        other = mixed_share(best);
-    /* Two sides are drawn in the order of the request, so that the turn of the better one is no
-     * turn of the picture. */
-    int count = 0, sides = other > 0 ? 2 : 1, first = sides > 1 && best[1].side < best[0].side;
-    for (int i = 0; i < sides; i++) {
-        int k = first ^ i;
+        shares[1] = mixed_share(best);
+    if (stack->request.above) {
+        const struct stack_side *above = plant->sides + stack->request.bake.directions_count - 1;
+        best[2] = see(above, eye, forward, instance->stretch, plant->bound.radius_m);
+        shares[2] = asinf(fminf(best[2].cosine, 1)) / (float)M_PI_2;
+    }
+    shares[1] *= 1 - shares[2];
+    shares[0] -= shares[1] + shares[2];
+    /* Sides are drawn in the order of the request, so that the turn of the better one is no turn of
+     * the picture. */
+    int count = 0, first = shares[1] > 0 && best[1].side < best[0].side;
+    for (int i = 0; i < 3; i++) {
+        int k = i < 2 ? first ^ i : i;
+        if (!(shares[k] > 0))
+            continue;
         float wanted = slices_wanted(stack, plant, &best[k], focal);
-        count += side_parts(stack, &best[k], lod, wanted, k ? other : 1 - other, parts + count);
+        count += side_parts(stack, &best[k], lod, wanted, shares[k], parts + count);
     }
     return count;
 }

@@ -32,6 +32,13 @@ struct option {
     { #field, OPTION_CHOICE,                                                                       \
       offsetof(type, field) + 0 * sizeof(_Generic(((type *)0)->field, int: 1)),                    \
       (fallback), 0, 0, "", doc, words }
+/* The same of a field of an inner struct, which several methods share. */
+#define OPTION_IN(type, inner, field, fallback, minimum, maximum, unit, doc)                       \
+    { #field, OPTION_TYPE(type, inner.field), offsetof(type, inner.field), (fallback), (minimum), (maximum), unit, doc, NULL }
+#define OPTION_WORD_IN(type, inner, field, fallback, words, doc)                                   \
+    { #field, OPTION_CHOICE,                                                                       \
+      offsetof(type, inner.field) + 0 * sizeof(_Generic(((type *)0)->inner.field, int: 1)),        \
+      (fallback), 0, 0, "", doc, words }
 #define OPTION_END { NULL, OPTION_INT, 0, 0, 0, 0, NULL, NULL, NULL }
 /* clang-format on */
 
