@@ -79,16 +79,17 @@ static void ratios_of(const char *method, const char *options, double ratios[VIE
 static void test_oblique__a_ball_of_leaves_covers_the_same_from_everywhere(void **state)
 {
     (void)state;
-    /* Leaves of a known normal show at most three times what they turn to the front. */
+    /* Leaves of a known normal show at most three times what they turn to the front, which takes
+     * 12 % from those that are alone in a texel, at 45 degrees. */
     static const struct {
         const char *method, *options;
         double allowed;
     } cases[] = {
         {"texels", "slices=32,resolution=32,turns=1,near=0", 0.05},
         {"texels", "slices=32,resolution=32,turns=1,near=0,interpolate=on,smooth=on", 0.05},
-        {"shaded-texels", "slices=32,resolution=32,near=0", 0.08},
-        {"jakulin", "slices=16,resolution=32,near=0", 0.08},
-        {"jakulin", "slices=16,resolution=32,near=0,order=exact", 0.08},
+        {"shaded-texels", "slices=32,resolution=32,near=0", 0.1},
+        {"jakulin", "slices=16,resolution=32,near=0", 0.1},
+        {"jakulin", "slices=16,resolution=32,near=0,order=exact", 0.1},
     };
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         double ratios[VIEWS];

@@ -34,7 +34,8 @@ struct option {
       (fallback), 0, 0, "", doc, words }
 /* The same of a field of an inner struct, which several methods share. */
 #define OPTION_IN(type, inner, field, fallback, minimum, maximum, unit, doc)                       \
-    { #field, OPTION_TYPE(type, inner.field), offsetof(type, inner.field), (fallback), (minimum), (maximum), unit, doc, NULL }
+    { #field, OPTION_TYPE(type, inner.field), offsetof(type, inner.field), (fallback), (minimum),  \
+      (maximum), unit, doc, NULL }
 #define OPTION_WORD_IN(type, inner, field, fallback, words, doc)                                   \
     { #field, OPTION_CHOICE,                                                                       \
       offsetof(type, inner.field) + 0 * sizeof(_Generic(((type *)0)->inner.field, int: 1)),        \
