@@ -42,6 +42,14 @@ double cli_number(const struct argp_state *state, const char *option, const char
 size_t cli_bytes(const struct argp_state *state, const char *option, const char *text);
 uint64_t cli_seed(const struct argp_state *state, const char *option, const char *text);
 
+/* Where a verb that writes a folder writes it, and whether it prints the path of what to look at.
+ */
+struct cli_folder {
+    const char *out; /* as the verb has set it without --out */
+    bool quiet;
+};
+extern const struct argp cli_folder_argp; /* a child parser; its input is the struct cli_folder */
+
 /* One cell and one camera, as `render` and `reference` take them. */
 struct cli_shot {
     const char *scene, *method, *trees, *lod, *size, *target_format, *cell, *backend, *out;

@@ -143,6 +143,29 @@ static const struct argp_option shot_options[] = {
 
 const struct argp cli_shot_argp = {shot_options, shot_option, NULL, NULL, NULL, NULL, NULL};
 
+static error_t folder_option(int key, char *text, struct argp_state *state)
+{
+    struct cli_folder *folder = state->input;
+    switch (key) {
+    case 'o':
+        folder->out = text;
+        return 0;
+    case 'q':
+        folder->quiet = true;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option folder_options[] = {
+    {"out", 'o', "DIR", 0, "where to write, instead of the folder that the text above names", 0},
+    {"quiet", 'q', NULL, 0, "do not print the path", 0},
+    {0},
+};
+
+const struct argp cli_folder_argp = {folder_options, folder_option, NULL, NULL, NULL, NULL, NULL};
+
 enum status cli_shot_cell(struct arena *arena, const struct cli_shot *shot, bool with_method,
                           struct cell *cell, struct error *error)
 {

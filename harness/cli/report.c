@@ -6,19 +6,16 @@
 #include <string.h>
 
 struct request {
-    const char *run, *out;
-    bool quiet;
+    struct cli_folder folder;
+    const char *run;
 };
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     struct request *request = state->input;
     switch (key) {
-    case 'o':
-        request->out = text;
-        return 0;
-    case 'q':
-        request->quiet = true;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &request->folder;
         return 0;
     case ARGP_KEY_ARG:
         if (request->run)
@@ -33,21 +30,16 @@ static error_t parse(int key, char *text, struct argp_state *state)
     }
 }
 
-static const struct argp_option options[] = {
-    {"out", 'o', "DIR", 0, "where to write; reports/NAME-OF-THE-RUN by default", 0},
-    {"quiet", 'q', NULL, 0, "do not print the page's path", 0},
-    {0},
-};
-
 int verb_report(int argc, char **argv)
 {
+    const struct argp_child children[] = {{&cli_folder_argp, 0, NULL, 0}, {0}};
     const struct argp argp = {
-        options,
+        NULL,
         parse,
         "RUN",
-        "Writes OUT/index.html (self-contained), OUT/plots and OUT/tables from "
-        "the folder of a run alone, and prints the page's path.",
-        NULL,
+        "Writes DIR/index.html (self-contained), DIR/plots and DIR/tables from the folder of a "
+        "run alone, DIR being reports/NAME-OF-THE-RUN, and prints the page's path.",
+        children,
         NULL,
         NULL};
     struct request request = {0};
@@ -58,10 +50,11 @@ int verb_report(int argc, char **argv)
     for (size_t end = strlen(run); end > 1 && run[end - 1] == '/'; end--)
         run[end - 1] = 0;
     const char *slash = strrchr(run, '/');
-    const char *out =
-        request.out ? request.out : arena_printf(arena, "reports/%s", slash ? slash + 1 : run);
+    const char *out = request.folder.out
+                          ? request.folder.out
+                          : arena_printf(arena, "reports/%s", slash ? slash + 1 : run);
     enum status status = report_write(run, out, &error);
-    if (!status && !request.quiet)
+    if (!status && !request.folder.quiet)
         printf("%s/index.html\n", out);
     arena_destroy(arena);
     return status ? cli_fail(&error) : STATUS_OK;

@@ -4,20 +4,11 @@
 
 #include <stdio.h>
 
-struct request {
-    const char *out;
-    bool quiet;
-};
-
 static error_t parse(int key, char *text, struct argp_state *state)
 {
-    struct request *request = state->input;
     switch (key) {
-    case 'o':
-        request->out = text;
-        return 0;
-    case 'q':
-        request->quiet = true;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = state->input;
         return 0;
     case ARGP_KEY_ARG:
         argp_failure(state, STATUS_USAGE, 0, "'%s' is too much: it takes no arguments", text);
@@ -27,30 +18,25 @@ static error_t parse(int key, char *text, struct argp_state *state)
     }
 }
 
-static const struct argp_option options[] = {
-    {"out", 'o', "DIR", 0, "where to write; reports/shaders by default", 0},
-    {"quiet", 'q', NULL, 0, "do not print the picture's path", 0},
-    {0},
-};
-
 int verb_shaders(int argc, char **argv)
 {
+    const struct argp_child children[] = {{&cli_folder_argp, 0, NULL, 0}, {0}};
     const struct argp argp = {
-        options,
+        NULL,
         parse,
         NULL,
         "Maps the error of the shaders of twigs of needles, in their exact form and as the paper "
         "prints them, against converged quadrature: over the angle of the eye to the twig, that of "
-        "the needles, and three densities. Writes OUT/shaders.dat, shaders.gp and shaders.png, and "
-        "prints the picture's path.",
-        NULL,
+        "the needles, and three densities. Writes DIR/shaders.dat, shaders.gp and shaders.png, DIR "
+        "being reports/shaders, and prints the picture's path.",
+        children,
         NULL,
         NULL};
-    struct request request = {.out = "reports/shaders"};
-    argp_parse(&argp, argc, argv, 0, NULL, &request);
+    struct cli_folder folder = {.out = "reports/shaders"};
+    argp_parse(&argp, argc, argv, 0, NULL, &folder);
     struct error error = {0};
-    enum status status = shaders_draw(request.out, &error);
-    if (!status && !request.quiet)
-        printf("%s/shaders.png\n", request.out);
+    enum status status = shaders_draw(folder.out, &error);
+    if (!status && !folder.quiet)
+        printf("%s/shaders.png\n", folder.out);
     return status ? cli_fail(&error) : STATUS_OK;
 }
