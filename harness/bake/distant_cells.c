@@ -1,5 +1,7 @@
 /* Cells of trees that stand near each other: squares of the ground, cut until few trees are in each
- * (the leaves of a quadtree). */
+ * (the leaves of a quadtree). Not those of cells.h: these hold trees of all species, so that a cell
+ * is drawn whole, its trees in the order of its memory, without a list of trees made and sorted a
+ * picture; those are of one species, whose moments stand for their trees. */
 #include "bake/distant_parts.h"
 
 #include <math.h>
