@@ -24,7 +24,7 @@ static uint16_t mean_depth(const struct slices *slices, const size_t at[2], bool
     float weights[2] = {0}, depth = 0;
     for (int k = 0; k < 2; k++)
         weights[k] = at[k] == SIZE_MAX ? 0 : (float)slices->color[at[k]][3] / 255.0f;
-    weights[from_behind] *= 1 - weights[!from_behind];
+    weights[!from_behind] *= 1 - weights[from_behind]; /* the nearer one hides the other */
     for (int k = 0; k < 2; k++) /* 0 is the front half */
         if (weights[k] > 0)
             depth += weights[k] / (weights[0] + weights[1]) *
