@@ -458,6 +458,45 @@ static void refused(const char *from, const char *to, const char *const says[2])
     arena_destroy(arena);
 }
 
+/* The paper of the conifers, on runs whose times are a straight line and an exponential of the
+ * trees. */
+static void test_papers__a_law_is_judged_by_its_residuals(void **state)
+{
+    static const size_t trees[] = {36, 40, 51, 68, 85, 102, 113, 204};
+    for (int exponential = 0; exponential < 2; exponential++) {
+        struct error error = {0};
+        struct paper paper;
+        if (paper_read(*state, "reports/papers/hattab-babahenini-djedi.json", &paper, &error))
+            fail_msg("%s", error.text);
+        struct run *run = make_run(*state, "x", ROUNDS);
+        run->results_count = 0;
+        for (size_t i = 0; i < sizeof trees / sizeof *trees; i++) {
+            double n = (double)trees[i], seconds = exponential ? exp(0.01 * n) : 2 + 0.1 * n;
+            const struct kind kind = {.scene = "pines",
+                                      .method = "conifers",
+                                      .options = "",
+                                      .trees = trees[i],
+                                      .lod = LOD_AUTO,
+                                      .rate = 1 / seconds,
+                                      .wobble = 1.01};
+            add(*state, run, &kind, ROUNDS);
+        }
+        size_t count;
+        struct book *book = book_make(*state, run);
+        struct paper_beside *beside = papers_beside(book, &paper, 1, &count);
+        assert_int_equal(count, 1);
+        assert_int_equal(beside->blocks_count, 1);
+        const struct growth_fit *fits = beside->blocks->fits;
+        assert_true(fits[exponential ? GROWTH_EXPONENTIAL : GROWTH_LINEAR].residual < 0.02);
+        assert_true(fits[exponential ? GROWTH_LINEAR : GROWTH_EXPONENTIAL].residual > 0.1);
+        assert_true(fabs(fits[GROWTH_EXPONENTIAL].b - 0.01) < 1e-4 || !exponential);
+        for (size_t i = 0; i < beside->findings_count; i++)
+            if (beside->findings[i].claim->kind == PAPER_LAW)
+                assert_int_equal(beside->findings[i].verdict,
+                                 exponential ? PAPER_HOLDS : PAPER_FAILS);
+    }
+}
+
 static void test_papers__bad_files_are_refused_by_one_clear_line(void **state)
 {
     (void)state;
@@ -562,6 +601,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(test_papers__a_run_without_a_printed_cell_has_no_section),
         cmocka_unit_test(test_papers__a_variant_of_one_printed_row_has_no_table),
         cmocka_unit_test(test_papers__worst_and_best_are_the_slowest_and_fastest_frames),
+        cmocka_unit_test(test_papers__a_law_is_judged_by_its_residuals),
         cmocka_unit_test(test_papers__bad_files_are_refused_by_one_clear_line),
         cmocka_unit_test(test_papers__files_of_this_project_are_read_and_their_scenes_exist),
         cmocka_unit_test(test_papers__the_foggy_forest_is_the_forest_with_fog),

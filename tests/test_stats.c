@@ -201,6 +201,42 @@ static void test_stats__a_power_laws_interval_covers_the_true_exponent(void **st
     NEAR((double)covered / TRIALS, 0.95, 3 * sqrt(0.95 * 0.05 / TRIALS));
 }
 
+/* Each law's own data, with three percent of noise; the parameters that made them are found again,
+ * the other laws fit worse, and no neighbour of the parameters fits better. */
+static void test_stats__each_law_of_growth_is_told_from_the_others(void **state)
+{
+    (void)state;
+    enum { COUNT = 40 };
+    const struct growth_fit made[GROWTH_LAWS] = {{-3, 0.5, 0}, {0.02, 1.7, 0}, {2, 0.015, 0}};
+    struct random random = random_seed(7, 1);
+    for (int law = 0; law < GROWTH_LAWS; law++) {
+        double x[COUNT], y[COUNT], least = 0;
+        for (int i = 0; i < COUNT; i++) {
+            x[i] = 10 + 5 * i;
+            y[i] = growth_at(law, &made[law], x[i]) * (1 + 0.03 * gaussian(&random));
+        }
+        struct growth_fit fit = stats_growth(law, x, y, COUNT);
+        NEAR(fit.a / made[law].a, 1, 0.15);
+        NEAR(fit.b / made[law].b, 1, 0.05);
+        NEAR(fit.residual, 0.03, 0.012);
+        for (int i = 0; i < COUNT; i++)
+            least += pow(growth_at(law, &fit, x[i]) / y[i] - 1, 2);
+        NEAR(sqrt(least / (COUNT - 2)), fit.residual, 1e-12);
+        for (int k = 0; k < 4; k++) {
+            struct growth_fit near = fit;
+            *(k < 2 ? &near.a : &near.b) *= k % 2 ? 1.001 : 0.999;
+            double sum = 0;
+            for (int i = 0; i < COUNT; i++)
+                sum += pow(growth_at(law, &near, x[i]) / y[i] - 1, 2);
+            assert_true(sum > least);
+        }
+        for (int other = 0; other < GROWTH_LAWS; other++)
+            if (other != law)
+                assert_true(stats_growth(other, x, y, COUNT).residual > 2 * fit.residual);
+        assert_true(isnan(stats_growth(law, x, y, 2).residual));
+    }
+}
+
 static void test_stats__the_front_is_what_no_other_point_beats(void **state)
 {
     (void)state;
@@ -241,6 +277,7 @@ int main(void)
         cmocka_unit_test(test_stats__quantiles_of_normal_and_student_are_those_of_gsl),
         cmocka_unit_test(test_stats__a_power_law_is_found_again),
         cmocka_unit_test(test_stats__a_power_laws_interval_covers_the_true_exponent),
+        cmocka_unit_test(test_stats__each_law_of_growth_is_told_from_the_others),
         cmocka_unit_test(test_stats__the_front_is_what_no_other_point_beats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -173,6 +173,7 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
         [FIGURE_GROWTH] = ("Bars: 95 % intervals. Lines: a power law fitted to three or more tree "
                            "counts; N^(\u22121) means that twice the trees take twice the time."),
         [FIGURE_DISTANCE] = "One point a view; error of the representation.",
+        [FIGURE_PACE] = "One point a view: the median over the rounds.",
         [FIGURE_ELEVATION] = "0: from the side, 90: from straight above. One point a view; error "
                              "of the representation.",
         [FIGURE_AZIMUTH] = "One point a view; error of the representation.",
@@ -182,6 +183,8 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
                              "memory. Bars: 95 % intervals. A "
                              "point above it mixes large and small triangles."),
         [FIGURE_PAPER] = "On the line: the same ratio as printed. Bars: 95 % intervals.",
+        [FIGURE_LAW] = "Times over each one's base row; lines: of three laws the one that fits "
+                       "best.",
         [FIGURE_SWEEP] = "Along a line nothing else changes. Bars: 95 % intervals.",
         [FIGURE_MEMORY] = "What a method keeps, against its error: to the left is less.",
     };
@@ -192,7 +195,9 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
             continue;
         if (!shown++)
             fprintf(page->out, "<div%s><div class=\"figures%s\">\n",
-                    figure->kind >= FIGURE_ROOFLINE ? "" : " class=\"still\"",
+                    figure->kind >= FIGURE_ROOFLINE || figure->kind == FIGURE_PACE
+                        ? ""
+                        : " class=\"still\"",
                     figure->kind == FIGURE_SWEEP ? " three" : "");
         put_figure(page, figure, captions[figure->kind]);
     }
@@ -237,6 +242,9 @@ static void put_growth_and_distance(const struct page *page)
             "<p class=\"soft still\">No plot: in every scene of this run the camera keeps its "
             "distance to the trees; a scene that walks or flies in shows how errors grow "
             "near by.</p>\n");
+    if (page_has(page, FIGURE_PACE))
+        page_text(page, "<h3>Frame time against distance</h3>\n");
+    page_figures(page, FIGURE_PACE, FIGURE_PACE);
 }
 
 static void put_angles(const struct page *page)
@@ -324,6 +332,7 @@ static void put_page(const struct page *page)
     page_cost(page);
     page_limit(page);
     page_papers(page);
+    page_shaders(page);
     page_text(page, "<h2 id=\"overall\">Each method over all scenes and tree counts</h2>\n");
     answer_overall(page->book, page->out);
     put_pictures(page);

@@ -35,6 +35,10 @@ void page_tracings(const struct page *page); /* the references' share of it; a p
  * table has a cell of the run. */
 void page_papers(const struct page *page);
 
+/* The error maps of the shaders of needles, OUT/plots/shaders.png; nothing where no cell draws with
+ * them. */
+void page_shaders(const struct page *page);
+
 /* Where the numbers come from: failures, provenance, how to cite, how to do it again. */
 void page_failures(const struct page *page);
 void page_provenance(const struct page *page);

@@ -52,6 +52,37 @@ static void put_line(const struct page *page, const struct paper_line *line)
             number_plain(line->ratio.value / line->printed_ratio, 3).text);
 }
 
+/* The laws that the times may grow by, each with its residual: the least is marked. */
+static void put_laws(const struct page *page, const struct paper_block *block)
+{
+    const struct growth_fit *sides[] = {block->printed_fits, block->fits};
+    if (!block->table->law || isnan(block->fits[GROWTH_LINEAR].residual))
+        return;
+    fprintf(page->out, "<p>By which law do the seconds grow with N, the ");
+    page_safe(page, block->table->law);
+    page_text(page, "? Each is fitted by least squares of relative residuals to the rows that both "
+                    "have; the residual is their root mean square (n \u2212 2).</p>\n"
+                    "<div class=\"scroll\"><table class=\"paper\"><thead><tr>"
+                    "<th scope=\"col\">law</th><th scope=\"col\" class=\"n\">printed [s]</th>"
+                    "<th scope=\"col\" class=\"n\">residual [%]</th>"
+                    "<th scope=\"col\" class=\"n\">ours [s]</th>"
+                    "<th scope=\"col\" class=\"n\">residual [%]</th></tr></thead><tbody>\n");
+    for (int law = 0; law < GROWTH_LAWS; law++) {
+        fprintf(page->out, "<tr><td>%s</td>", growth_word((enum growth_law)law));
+        for (int side = 0; side < 2; side++) {
+            const struct growth_fit *fits = sides[side], *fit = &fits[law];
+            bool least = true;
+            for (int other = 0; other < GROWTH_LAWS; other++)
+                least = least && fit->residual <= fits[other].residual;
+            fprintf(page->out, "<td class=\"n\">%s</td><td class=\"n\">%s%s%s</td>",
+                    paper_law(page->arena, (enum growth_law)law, fit), least ? "<b>" : "",
+                    number_plain(100 * fit->residual, 3).text, least ? "</b>" : "");
+        }
+        page_text(page, "</tr>\n");
+    }
+    page_text(page, "</tbody></table></div>\n");
+}
+
 static void put_block(const struct page *page, const struct paper_block *block)
 {
     const char *unit = paper_unit_word(block->table->unit);
@@ -71,6 +102,7 @@ static void put_block(const struct page *page, const struct paper_block *block)
     for (size_t i = 0; i < block->lines_count; i++)
         put_line(page, &block->lines[i]);
     page_text(page, "</tbody></table></div>\n");
+    put_laws(page, block);
     for (size_t i = 0; i < block->lines_count; i++)
         if (*block->lines[i].printed->note) {
             fprintf(page->out, "<p class=\"soft\">%s trees, %s, ",
@@ -190,7 +222,7 @@ void page_papers(const struct page *page)
         "hold where it lies outside, and stays open where it crosses the band's end or the run "
         "has fewer than three rounds. As numbers: "
         "<a href=\"tables/papers.csv\">CSV</a>, <a href=\"tables/papers.md\">Markdown</a>.</p>\n");
-    page_figures(page, FIGURE_PAPER, FIGURE_PAPER);
+    page_figures(page, FIGURE_PAPER, FIGURE_LAW);
     for (size_t i = 0; i < book->besides_count; i++)
         put_beside(page, &book->besides[i]);
 }

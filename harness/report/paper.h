@@ -25,6 +25,7 @@ struct paper_row {
     struct paper_side
         cell; /* of ours that stands for it; options NULL: each variant stands apart */
     const char *effects, *note; /* as printed; note: "" */
+    double size;                /* that the table's law is over; the trees where it says none */
     enum paper_statistic statistic;
     double value; /* in the table's unit */
 };
@@ -32,6 +33,7 @@ struct paper_row {
 struct paper_table {
     const char *title;
     enum paper_unit unit;
+    const char *law;         /* what the time grows with ("trees"); NULL: no law is sought */
     size_t rows_count, base; /* ratios are to the base row */
     struct paper_row *rows;
 };
@@ -40,7 +42,9 @@ enum paper_kind {
     PAPER_UNTESTED, /* no figure of a run decides it */
     PAPER_RATIO,  /* rate of some cells over that of others, pairs alike in all that no side says */
     PAPER_GROWTH, /* exponent of the rate against the trees */
-    PAPER_VALUE   /* a rate itself */
+    PAPER_VALUE,  /* a rate itself */
+    PAPER_LAW     /* residual of an exponential of the trees over that of the better of a straight
+                     line and a power law, of the time */
 };
 struct paper_claim {
     const char *id, *claim, *figure;
@@ -85,7 +89,15 @@ struct paper_block {
     const struct row *example; /* one of the variant's rows: its name and colour */
     size_t lines_count;
     struct paper_line *lines;
+    /* Laws of the time; NaN where the table seeks none. */
+    struct growth_fit printed_fits[GROWTH_LAWS], fits[GROWTH_LAWS];
 };
+/* Fits the laws to the lines that both have: the same rows for printed and ours. */
+void paper_fit(struct arena *arena, struct paper_block *block);
+/* The residual of the exponential over the smaller of the others'; NaN: fewer than three. */
+double paper_exponential(const double *sizes, const double *seconds, size_t count);
+/* "a + b N", "a N^b", "a e^(b N)" with numbers; N is what the law is over. */
+const char *paper_law(struct arena *arena, enum growth_law law, const struct growth_fit *fit);
 
 enum paper_verdict { PAPER_HOLDS, PAPER_FAILS, PAPER_OPEN, PAPER_NOT_MEASURED };
 /* What a run says to a claim: one a variant of the method that the claim speaks of. */

@@ -59,7 +59,7 @@ static bool is_alike(const struct court *court, const struct paper_sample *a,
                      const struct paper_sample *b)
 {
     const struct paper_side *of = &court->claim->of, *over = &court->claim->over;
-    bool growth = court->claim->kind == PAPER_GROWTH;
+    bool growth = court->claim->kind == PAPER_GROWTH || court->claim->kind == PAPER_LAW;
     return (of->scene || over->scene || same_text(a->cell.scene, b->cell.scene)) &&
            (of->options || over->options || same_text(a->cell.options, b->cell.options)) &&
            (of->has_lod || over->has_lod || a->cell.lod == b->cell.lod) &&
@@ -92,8 +92,18 @@ static void poll_ratios(struct court *court, struct poll *poll)
         }
 }
 
-/* The exponents of the series that begins with a sample; false: an earlier sample has it. */
-static bool series_exponents(struct court *court, size_t first, double *exponents)
+/* What the claim asks of a series, rates against trees. */
+static double series_figure(enum paper_kind kind, const double *trees, double *rates, size_t count)
+{
+    if (kind == PAPER_GROWTH)
+        return stats_power_law(trees, rates, count).b.value;
+    for (size_t i = 0; i < count; i++)
+        rates[i] = 1 / rates[i];
+    return paper_exponential(trees, rates, count);
+}
+
+/* The figures of the series that begins with a sample; false: an earlier sample has it. */
+static bool series_figures(struct court *court, size_t first, double *figures)
 {
     const struct paper_sample *samples = court->samples;
     double *trees = ARENA_ARRAY(court->arena, double, court->samples_count);
@@ -110,17 +120,17 @@ static bool series_exponents(struct court *court, size_t first, double *exponent
             trees[count] = (double)samples[i].cell.trees;
             values[count++] = samples[i].values[r];
         }
-        exponents[r] = stats_power_law(trees, values, count).b.value;
+        figures[r] = series_figure(court->claim->kind, trees, values, count);
     }
     return true;
 }
 
 static void poll_growth(struct court *court, struct poll *poll)
 {
-    double *exponents = ARENA_ARRAY(court->arena, double, court->rounds + 1);
+    double *figures = ARENA_ARRAY(court->arena, double, court->rounds + 1);
     for (size_t i = 0; i < court->samples_count; i++)
-        if (is_of(court, &court->samples[i]) && series_exponents(court, i, exponents))
-            poll_add(court, poll, exponents);
+        if (is_of(court, &court->samples[i]) && series_figures(court, i, figures))
+            poll_add(court, poll, figures);
 }
 
 static void poll_values(struct court *court, struct poll *poll)

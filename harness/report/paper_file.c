@@ -72,6 +72,7 @@ static void read_row(struct json *table, struct json *object, const struct paper
     row->cell.scene = scene_of(table, object, row->effects);
     row->statistic = (enum paper_statistic)json_word(object, "statistic", statistic_words, 0);
     row->value = json_number(object, "value", NAN, 1e-9, 1e9);
+    row->size = json_number(object, "size", (double)row->cell.trees, 1e-9, 1e12);
     row->note = json_text(object, "note", "");
 }
 
@@ -80,6 +81,7 @@ static void read_table(struct arena *arena, struct json *object, struct paper_ta
     struct paper_side size = {0};
     table->title = text_needed(object, "title");
     table->unit = (enum paper_unit)json_word(object, "unit", unit_words, -1);
+    table->law = json_text(object, "law", NULL);
     read_size(object, &size);
     table->rows_count = json_array(object, "rows");
     table->rows = ARENA_ARRAY(arena, struct paper_row, table->rows_count + 1);
@@ -125,7 +127,7 @@ static void read_test(struct json *test, struct paper_claim *claim)
 {
     struct json *of = json_object(test, "of"), *over = json_object(test, "over");
     claim->kind =
-        (enum paper_kind)(PAPER_RATIO + json_word(test, "kind", "ratio|growth|value", -1));
+        (enum paper_kind)(PAPER_RATIO + json_word(test, "kind", "ratio|growth|value|law", -1));
     claim->statistic = (enum paper_statistic)json_word(test, "statistic", statistic_words, 0);
     claim->column = column_of(test);
     claim->why = text_needed(test, "why");

@@ -212,6 +212,8 @@ static size_t find_blocks(struct bench *bench, const struct paper_table *table,
     for (size_t b = 0; b < count; b++)
         for (size_t k = 0; k < table->rows_count; k++)
             blocks[b].lines[k] = line_of(bench, table, &table->rows[k], blocks[b].example);
+    for (size_t b = 0; b < count; b++)
+        paper_fit(book->arena, &blocks[b]);
     return count;
 }
 

@@ -63,6 +63,25 @@ static void put_interval(FILE *out, const struct interval *interval)
     fputs(" |", out);
 }
 
+static void write_laws(const struct book *book, const struct paper_block *block, FILE *out)
+{
+    if (!block->table->law || isnan(block->fits[GROWTH_LINEAR].residual))
+        return;
+    fputs("\nSeconds against N, the ", out);
+    markdown_text(out, block->table->law);
+    fputs(":\n\n| law | printed [s] | residual [%] | ours [s] | residual [%] |\n"
+          "|:--|--:|--:|--:|--:|\n",
+          out);
+    for (int law = 0; law < GROWTH_LAWS; law++) {
+        const struct growth_fit *fits[] = {&block->printed_fits[law], &block->fits[law]};
+        fprintf(out, "| %s |", growth_word((enum growth_law)law));
+        for (int side = 0; side < 2; side++)
+            fprintf(out, " %s | %s |", paper_law(book->arena, (enum growth_law)law, fits[side]),
+                    number_plain(100 * fits[side]->residual, 3).text);
+        fputc('\n', out);
+    }
+}
+
 static void write_block(const struct book *book, const struct paper_block *block, FILE *out)
 {
     const char *unit = paper_unit_word(block->table->unit);
@@ -87,6 +106,7 @@ static void write_block(const struct book *book, const struct paper_block *block
         put_interval(out, &line->ratio);
         fprintf(out, " %zu |\n", line->rounds);
     }
+    write_laws(book, block, out);
 }
 
 static void write_findings(const struct book *book, const struct paper_beside *beside, FILE *out)

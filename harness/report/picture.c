@@ -60,7 +60,7 @@ static struct image *image_shrunk(struct arena *arena, const struct image *image
     return small;
 }
 
-static void put_base64(FILE *out, const uint8_t *bytes, size_t size)
+void picture_base64(const uint8_t *bytes, size_t size, FILE *out)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (size_t i = 0; i < size; i += 3) {
@@ -133,6 +133,6 @@ void picture_put(const struct picture *picture, struct image *image, FILE *out)
             small->width_px, small->height_px, picture->attributes);
     html_put(out, picture->alt);
     fputs("\" src=\"data:image/png;base64,", out);
-    put_base64(out, bytes, size);
+    picture_base64(bytes, size, out);
     fputs("\"></a>", out);
 }

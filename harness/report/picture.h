@@ -24,6 +24,7 @@ struct image *picture_create(struct arena *arena, int width_px, int height_px, i
 struct image *picture_of_frame(struct arena *arena, const struct frame *frame);
 /* OUT/pictures/NAME.png, and the thumbnail that links to it. */
 void picture_put(const struct picture *picture, struct image *image, FILE *out);
+void picture_base64(const uint8_t *bytes, size_t size, FILE *out);
 /* Says on the page why there is none. */
 void picture_missing(struct gallery *gallery, const char *why, FILE *out);
 

@@ -56,6 +56,9 @@ enum status plot_growth(const struct book *book, size_t family, const char *fold
 /* Error against what the camera changes, over a group's views. */
 enum status plot_views(const struct book *book, const struct group *group, enum view_axis axis,
                        const char *folder, struct figure *figure, struct error *error);
+/* Frame time against distance, of groups whose cells timed just the views that are compared. */
+enum status plot_pace(const struct book *book, const struct group *group, const char *folder,
+                      struct figure *figure, struct error *error);
 /* How many series of the same method come before this one: tells them apart by dashes. */
 int plot_variant(const struct book *book, size_t series);
 /* Cells of a group under the machine's roof: frames a second of all of them; triangles a second
@@ -75,6 +78,9 @@ enum status plot_roofline(const struct book *book, const struct group *group,
 struct paper_beside;
 enum status plot_paper(const struct book *book, const struct paper_beside *beside,
                        const char *folder, struct figure *figure, struct error *error);
+/* Times of a table that seeks a law, printed and ours over their base rows, and the laws. */
+enum status plot_law(const struct book *book, const struct paper_beside *beside, size_t table,
+                     const char *folder, struct figure *figure, struct error *error);
 /* Error, frame time or memory against a swept option. */
 struct sweep;
 enum sweep_axis { SWEEP_ERROR, SWEEP_TIME, SWEEP_MEMORY };

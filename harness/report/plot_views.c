@@ -1,5 +1,6 @@
 /* The static plots of error against what the camera changes along its path: its distance to the
- * trees or, where it keeps that, the elevation and the azimuth that it sees them from. */
+ * trees or, where it keeps that, the elevation and the azimuth that it sees them from; and of frame
+ * time against the distance. */
 #include "report/plot.h"
 
 #include <math.h>
@@ -166,5 +167,85 @@ enum status plot_views(const struct book *book, const struct group *group, enum 
         put_curve(&plot, &book->rows[group->rows[i]], axis);
     if (noisy)
         put_noise(&plot, &span.noise);
+    return plot_close(&plot, figure, error);
+}
+
+/* The time of a row's frame at a view, the median over its repetitions: known where each timed just
+ * the views that are compared (frames_max of the run is its views). NaN: not known. */
+static double seconds_at(const struct row *row, size_t view)
+{
+    const struct summary *summary = row->summary;
+    double *seconds = malloc((summary->repetitions + summary->failures + 1) * sizeof *seconds);
+    size_t count = 0;
+    for (size_t i = 0; seconds && i < summary->repetitions + summary->failures; i++) {
+        const struct result *result = summary->results[i];
+        if (result->status == STATUS_OK && result->frames_count == row->seen->views_count)
+            seconds[count++] = result->frame_seconds[view];
+    }
+    double median = stats_median(seconds, count);
+    free(seconds);
+    return median;
+}
+
+/* A row's times by distance; paces has a place for each view. */
+static size_t paces_of(const struct row *row, struct sight *paces)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < row->seen->views_count; i++) {
+        double at = row->seen->views[i].distance_m, seconds = seconds_at(row, i);
+        if (at > 0 && seconds > 0)
+            paces[count++] = (struct sight){at, 1e3 * seconds, 0};
+    }
+    qsort(paces, count, sizeof *paces, compare_sights);
+    return count;
+}
+
+static void put_pace(struct plot *plot, const struct row *row)
+{
+    const struct book *book = plot->book;
+    struct sight *paces = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
+    size_t count = paces_of(row, paces);
+    if (!count)
+        return;
+    int block = plot_block(plot, row->label), variant = plot_variant(book, row->series);
+    for (size_t i = 0; i < count; i++)
+        fprintf(plot->dat, "%.9g %.9g\n", paces[i].at, paces[i].error);
+    plot_curve(plot);
+    fprintf(
+        plot->gp,
+        "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
+        "%d linecolor rgb \"#%06x\" title ",
+        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
+        tint_rgb(tint_method(book, row->method_index)));
+    plot_text(plot->gp, row->label);
+    plot->key_rows++;
+}
+
+enum status plot_pace(const struct book *book, const struct group *group, const char *folder,
+                      struct figure *figure, struct error *error)
+{
+    if (!views_go(book, group, VIEW_DISTANCE) || group->rows_count > LINES_MAX)
+        return STATUS_OK;
+    struct axis x = axis_empty(), y = axis_empty();
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &book->rows[group->rows[i]];
+        struct sight *paces = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
+        size_t count = paces_of(row, paces);
+        for (size_t k = 0; k < count; k++) {
+            axis_add(&x, paces[k].at);
+            axis_add(&y, paces[k].error);
+        }
+    }
+    if (x.low > x.high)
+        return STATUS_OK;
+    axis_widen(&x, 0.05, 0.05);
+    axis_widen(&y, 0.08, 0.08);
+    struct plot plot;
+    figure->kind = FIGURE_PACE;
+    plot_open(&plot, book, folder, arena_printf(book->arena, "pace-%s", group->slug), group->title);
+    plot_axes(&plot, &x, &y, kinds[VIEW_DISTANCE].label, "frame time [ms]");
+    fputs("set key maxcols 1\n", plot.gp);
+    for (size_t i = 0; i < group->rows_count; i++)
+        put_pace(&plot, &book->rows[group->rows[i]]);
     return plot_close(&plot, figure, error);
 }

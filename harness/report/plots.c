@@ -7,7 +7,7 @@
 
 enum {
     FAMILIES_MAX = 6,
-    KINDS_COUNT = 6 + ROOFLINES_COUNT,
+    KINDS_COUNT = 7 + ROOFLINES_COUNT,
     SWEEPS_MAX = 6,
     SWEEP_AXES = SWEEP_MEMORY + 1
 };
@@ -35,6 +35,9 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
                             &figures->list[figures->count], error);
         keep(figures);
     }
+    if (status == STATUS_OK)
+        status = plot_pace(book, group, folder, &figures->list[figures->count], error);
+    keep(figures);
     for (int kind = 0; kind < ROOFLINES_COUNT && status == STATUS_OK; kind++) {
         status = plot_roofline(book, group, (enum roofline_kind)kind, folder,
                                &figures->list[figures->count], error);
@@ -65,13 +68,21 @@ static enum status plan_options(const struct book *book, const char *folder,
     return status;
 }
 
+static size_t papers_figures(const struct book *book)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < book->besides_count; i++)
+        count += 1 + book->besides[i].paper->tables_count;
+    return count;
+}
+
 enum status plots_draw(const struct book *book, const char *folder, struct figures *figures,
                        struct error *error)
 {
     *figures =
         (struct figures){.list = ARENA_ARRAY(book->arena, struct figure,
                                              FAMILIES_MAX * KINDS_COUNT + SWEEPS_MAX * SWEEP_AXES +
-                                                 book->besides_count + 2)};
+                                                 papers_figures(book) + 2)};
     enum status status = file_make_folder(folder, error);
     for (size_t g = 0; g < book->groups_count && status == STATUS_OK; g++)
         if (book_is_overview(book, g) && book->groups[g].family < FAMILIES_MAX)
@@ -81,6 +92,11 @@ enum status plots_draw(const struct book *book, const char *folder, struct figur
     for (size_t i = 0; i < book->besides_count && status == STATUS_OK; i++) {
         status = plot_paper(book, &book->besides[i], folder, &figures->list[figures->count], error);
         keep(figures);
+        for (size_t t = 0; t < book->besides[i].paper->tables_count && status == STATUS_OK; t++) {
+            status =
+                plot_law(book, &book->besides[i], t, folder, &figures->list[figures->count], error);
+            keep(figures);
+        }
     }
     return status == STATUS_OK ? plot_draw(book, folder, figures, error) : status;
 }

@@ -37,6 +37,18 @@ struct power_law {
 /* Fewer than 2 positive pairs, or all at one x: NaN; 2: no interval (NaN). */
 struct power_law stats_power_law(const double *x, const double *y, size_t count);
 
+/* y = a + b x, a x^b or a exp(b x), each by least squares of the relative residuals, so that their
+ * residuals may be compared: sqrt(sum (model / y - 1)^2 / (n - 2)). Pairs that are not positive are
+ * left out; fewer than 3, or all at one x: NaN. */
+enum growth_law { GROWTH_LINEAR, GROWTH_POWER, GROWTH_EXPONENTIAL };
+enum { GROWTH_LAWS = GROWTH_EXPONENTIAL + 1 };
+struct growth_fit {
+    double a, b, residual;
+};
+struct growth_fit stats_growth(enum growth_law law, const double *x, const double *y, size_t count);
+double growth_at(enum growth_law law, const struct growth_fit *fit, double x);
+const char *growth_word(enum growth_law law);
+
 /* Quantiles: p in [0, 1] (ends: infinite), degrees of freedom > 0; NaN outside. */
 double stats_normal_quantile(double p);
 double stats_student_quantile(double p, double degrees);
