@@ -62,6 +62,32 @@ static void test_error__an_over_long_text_ends_in_dots(void **unused)
     assert_int_equal(strlen(error.text), sizeof error.text - 1);
 }
 
+struct ended {
+    char *text; /* grows by name when it ends */
+    char name;
+};
+
+static void note_end(void *thing)
+{
+    const struct ended *ended = thing;
+    ended->text[strlen(ended->text)] = ended->name;
+}
+
+static void test_arena__ends_what_it_was_given_newest_first_while_it_still_holds(void **state)
+{
+    (void)state;
+    char text[4] = "";
+    struct arena *arena = arena_create(0);
+    for (int i = 0; i < 3; i++) {
+        struct ended *ended = ARENA_NEW(arena, struct ended);
+        *ended = (struct ended){text, (char)('a' + i)};
+        arena_at_end(arena, note_end, ended);
+    }
+    assert_string_equal(text, "");
+    arena_destroy(arena);
+    assert_string_equal(text, "cba");
+}
+
 static void test_arena__memory_is_zero_aligned_apart_and_counted(void **unused)
 {
     (void)unused;
@@ -437,6 +463,7 @@ int main(void)
         cmocka_unit_test(test_status__every_word_leads_back_to_its_code),
         cmocka_unit_test(test_error__context_stands_before_the_text_and_newlines_go),
         cmocka_unit_test(test_error__an_over_long_text_ends_in_dots),
+        cmocka_unit_test(test_arena__ends_what_it_was_given_newest_first_while_it_still_holds),
         cmocka_unit_test(test_arena__memory_is_zero_aligned_apart_and_counted),
         cmocka_unit_test(test_arena__what_was_not_asked_for_is_fenced_under_the_sanitizer),
         cmocka_unit_test(test_arena__over_budget_and_overflow_end_the_process_as_memory),

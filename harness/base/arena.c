@@ -22,8 +22,16 @@ struct block {
     size_t mapped_bytes;
 };
 
+/* What is to be ended before the arena. */
+struct ending {
+    void (*end)(void *thing);
+    void *thing;
+    struct ending *next;
+};
+
 struct arena {
     struct block *blocks;
+    struct ending *endings;
     char *free;        /* next free byte of the newest small block */
     size_t free_bytes; /* left in it */
     size_t budget_bytes, used_bytes;
@@ -67,6 +75,8 @@ void arena_destroy(struct arena *arena)
 {
     if (!arena)
         return;
+    for (struct ending *ending = arena->endings; ending; ending = ending->next)
+        ending->end(ending->thing);
     for (struct block *block = arena->blocks; block;) {
         struct block *next = block->next;
         unpoison(block, block->mapped_bytes);
@@ -143,4 +153,11 @@ char *arena_printf(struct arena *arena, const char *format, ...)
 size_t arena_used_bytes(const struct arena *arena)
 {
     return arena->used_bytes;
+}
+
+void arena_at_end(struct arena *arena, void (*end)(void *thing), void *thing)
+{
+    struct ending *ending = ARENA_NEW(arena, struct ending);
+    *ending = (struct ending){end, thing, arena->endings};
+    arena->endings = ending;
 }

@@ -22,6 +22,10 @@ char *arena_strdup(struct arena *arena, const char *text);
 char *arena_printf(struct arena *arena, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* When the arena is destroyed, end(thing) is called first, the newest first: for what a library of
+ * others holds. */
+void arena_at_end(struct arena *arena, void (*end)(void *thing), void *thing);
+
 /* Bytes handed out so far (host_bytes of a result). */
 size_t arena_used_bytes(const struct arena *arena);
 

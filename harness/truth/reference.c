@@ -217,18 +217,11 @@ static struct frame *render_frame(struct arena *arena, const struct render *rend
     return frame;
 }
 
-/* The scratch arena holds all but the frame. */
-static enum status render_in(struct arena *scratch, struct arena *arena, const struct scene *scene,
-                             struct render *render, bool quiet, struct frame **frame,
-                             struct reference_stats *stats, struct error *error)
+/* Traces a picture whose scene is built. The scratch arena holds all but the frame. */
+static void render_trace(struct arena *scratch, struct arena *arena, struct render *render,
+                         bool quiet, struct frame **frame, struct reference_stats *stats)
 {
     double start = clock_wall_seconds();
-    enum status status =
-        traced_scene_build(scratch, scene, render->threads, &render->picture.traced, error);
-    stats->build_seconds = clock_wall_seconds() - start;
-    if (status)
-        return status;
-    start = clock_wall_seconds();
     render_allocate(scratch, render);
     render_passes(render, quiet);
     *frame = render_frame(arena, render);
@@ -238,7 +231,44 @@ static enum status render_in(struct arena *scratch, struct arena *arena, const s
     stats->occlusion_rays = render->rays.occlusion;
     stats->standard_error =
         (float)plan_standard_error((const float(*)[4])render->variance, render->pixels);
-    return STATUS_OK;
+}
+
+struct tracer {
+    const struct scene *scene;
+    struct traced_scene traced;
+    int threads;
+};
+
+enum status tracer_open(struct arena *arena, const struct scene *scene, int threads,
+                        struct tracer **tracer, struct error *error)
+{
+    struct tracer *made = *tracer = ARENA_NEW(arena, struct tracer);
+    made->scene = scene;
+    made->threads = threads ? threads : clock_cpu_count();
+    return traced_scene_build(arena, scene, made->threads, &made->traced, error);
+}
+
+void tracer_close(struct tracer *tracer)
+{
+    embree_destroy(tracer->traced.embree);
+}
+
+enum status tracer_trace(const struct tracer *tracer, struct arena *arena, const struct view *view,
+                         const struct reference_options *options, struct frame **frame,
+                         struct reference_stats *stats, struct error *error)
+{
+    struct render render = {.threads = tracer->threads, .picture.traced = tracer->traced};
+    struct reference_stats made = {0};
+    enum status status = request_check(view, options, &render.plan.limits, error);
+    if (status)
+        return status;
+    picture_set(tracer->scene, view, options, &render.picture);
+    struct arena *scratch = arena_create(0);
+    render_trace(scratch, arena, &render, options->quiet, frame, &made);
+    arena_destroy(scratch);
+    if (stats)
+        *stats = made;
+    return frame_check(*frame, error);
 }
 
 enum status reference_render(struct arena *arena, const struct scene *scene,
@@ -246,20 +276,22 @@ enum status reference_render(struct arena *arena, const struct scene *scene,
                              struct frame **frame, struct reference_stats *stats,
                              struct error *error)
 {
-    struct render render = {0};
-    struct reference_stats made = {0};
-    enum status status = request_check(view, options, &render.plan.limits, error);
+    struct plan_limits limits;
+    enum status status = request_check(view, options, &limits, error);
     if (status)
         return status;
-    picture_set(scene, view, options, &render.picture);
-    render.threads = options->threads ? options->threads : clock_cpu_count();
     struct arena *scratch = arena_create(0);
-    status = render_in(scratch, arena, scene, &render, options->quiet, frame, &made, error);
-    embree_destroy(render.picture.traced.embree);
-    arena_destroy(scratch);
+    struct tracer *tracer;
+    double start = clock_wall_seconds();
+    status = tracer_open(scratch, scene, options->threads, &tracer, error);
+    double build_seconds = clock_wall_seconds() - start;
+    if (!status)
+        status = tracer_trace(tracer, arena, view, options, frame, stats, error);
     if (!status && stats)
-        *stats = made;
-    return status ? status : frame_check(*frame, error);
+        stats->build_seconds = build_seconds;
+    tracer_close(tracer);
+    arena_destroy(scratch);
+    return status;
 }
 
 static uint64_t hash_floats(uint64_t hash, const float *values, size_t count)

@@ -32,8 +32,19 @@ enum status reference_render(struct arena *arena, const struct scene *scene,
                              struct frame **frame, struct reference_stats *stats,
                              struct error *error);
 
-/* The same through the disk cache (key: scene hash, view, effects, options, tracer version). The
- * Embree scene is built only on a miss. */
+/* A scene that is built once and traced from many views. threads: 0 for all. The arena must live as
+ * long; the caller ends it with tracer_close, also after an error. */
+struct tracer;
+enum status tracer_open(struct arena *arena, const struct scene *scene, int threads,
+                        struct tracer **tracer, struct error *error);
+void tracer_close(struct tracer *tracer);
+/* As reference_render, but stats->build_seconds stays 0 and options->threads is not looked at. */
+enum status tracer_trace(const struct tracer *tracer, struct arena *arena, const struct view *view,
+                         const struct reference_options *options, struct frame **frame,
+                         struct reference_stats *stats, struct error *error);
+
+/* reference_render through the disk cache (key: scene hash, view, effects, options, tracer
+ * version). The Embree scene is built only on a miss. */
 enum status reference_cached(struct arena *arena, const struct scene *scene,
                              const struct view *view, const struct reference_options *options,
                              struct frame **frame, struct reference_stats *stats,
