@@ -94,8 +94,9 @@ prints 'scenes' '^tiny +96x72' list scenes
 prints 'metrics' '^rmse +linear' list metrics
 prints 'metrics of a path too' '^flicker-peak +linear +lower' list metrics
 prints 'plants with their triangles' '^poplar +98286 ' list plants
+prints 'grammars with their needles' '^pine-simple +[0-9]+ +16 +2048 .*branches=16' list plants
 prints 'the cache has a place' "^$work/cache\$" cache path
-for what in methods scenes metrics plants; do
+for what in methods scenes metrics plants grammars; do
   try list $what --json
   if python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); assert d[sys.argv[2]]' "$work/out" $what; then
     ok "list $what --json is JSON"

@@ -1,10 +1,14 @@
-/* treeline list: methods, scenes, metrics, plants; as tables or JSON. */
+/* treeline list: methods, scenes, metrics, plants, grammars; as tables or JSON. */
+#include "base/file.h"
 #include "cli/cli.h"
+#include "plant/lsystem.h"
 #include "plant/plant.h"
 #include "scene/scene.h"
 #include "truth/metrics.h"
 #include "wall/json.h"
 
+#include <glob.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -221,6 +225,58 @@ static enum status list_plants(const struct request *request, struct arena *aren
     return STATUS_OK;
 }
 
+static void grammar_put(struct json_out *out, const char *name, const struct lsystem *lsystem,
+                        const struct conifer *conifer)
+{
+    double height_m = (double)conifer->maximum_m[1] - (double)conifer->minimum_m[1];
+    const char *comma = "";
+    if (!out) {
+        printf("%-14s %9zu %9zu %9" PRIu64 " %9.2f  ", name, conifer->branches_count,
+               conifer->twigs_count, conifer->needles_count, height_m);
+        for (const struct option *o = lsystem_options(lsystem); o && o->name; o++) {
+            printf("%s%s=%g", comma, o->name, o->fallback);
+            comma = ",";
+        }
+        printf("\n");
+        return;
+    }
+    json_open(out, NULL, '{');
+    json_put_text(out, "name", name);
+    json_put_number(out, "branches", (double)conifer->branches_count);
+    json_put_number(out, "twigs", (double)conifer->twigs_count);
+    json_put_number(out, "needles", (double)conifer->needles_count);
+    json_put_number(out, "height_m", height_m);
+    json_open(out, "options", '[');
+    for (const struct option *o = lsystem_options(lsystem); o && o->name; o++)
+        option_put(out, o);
+    json_close(out);
+    json_close(out);
+}
+
+/* The conifers of scenes/plants, grown with their files' parameters. */
+static enum status list_grammars(const struct request *request, struct arena *arena,
+                                 struct json_out *out, struct error *error)
+{
+    glob_t found = {0};
+    enum status status = STATUS_OK;
+    (void)request;
+    glob(arena_printf(arena, "%s/scenes/plants/*.json", data_folder()), 0, NULL, &found);
+    if (!out)
+        printf("%-14s %9s %9s %9s %9s  %s\n", "grammar", "branches", "twigs", "needles", "height_m",
+               "parameters");
+    for (size_t i = 0; i < found.gl_pathc && !status; i++) {
+        struct lsystem *lsystem;
+        struct conifer *conifer;
+        status = lsystem_load(arena, found.gl_pathv[i], &lsystem, error);
+        if (!status)
+            status = lsystem_conifer(arena, lsystem, &conifer, error);
+        if (!status)
+            grammar_put(out, path_stem(arena, found.gl_pathv[i]), lsystem, conifer);
+    }
+    globfree(&found);
+    return status;
+}
+
 struct listing {
     const char *name;
     enum status (*print)(const struct request *request, struct arena *arena, struct json_out *out,
@@ -228,17 +284,22 @@ struct listing {
 };
 
 static const struct listing listings[] = {
-    {"methods", list_methods},
-    {"scenes", list_scenes},
-    {"metrics", list_metrics},
-    {"plants", list_plants},
+    {"methods", list_methods}, {"scenes", list_scenes},     {"metrics", list_metrics},
+    {"plants", list_plants},   {"grammars", list_grammars},
 };
+
+/* Grammars are plants. */
+static bool is_wanted(const char *what, const char *listing)
+{
+    return !what || strcmp(what, listing) == 0 ||
+           (strcmp(what, "plants") == 0 && strcmp(listing, "grammars") == 0);
+}
 
 int verb_list(int argc, char **argv)
 {
     const struct argp argp = {options,
                               parse,
-                              "[methods|scenes|metrics|plants]",
+                              "[methods|scenes|metrics|plants|grammars]",
                               "Lists what there is; without an argument, everything.",
                               NULL,
                               NULL,
@@ -253,7 +314,7 @@ int verb_list(int argc, char **argv)
     if (out)
         json_open(out, NULL, '{');
     for (size_t i = 0; i < sizeof listings / sizeof *listings && !status; i++) {
-        if (request.what && strcmp(request.what, listings[i].name) != 0)
+        if (!is_wanted(request.what, listings[i].name))
             continue;
         if (out)
             json_open(out, listings[i].name, '[');
@@ -265,9 +326,9 @@ int verb_list(int argc, char **argv)
         printed++;
     }
     if (!printed)
-        status =
-            error_set(&error, STATUS_USAGE,
-                      "list: '%s' is not one of methods, scenes, metrics, plants", request.what);
+        status = error_set(&error, STATUS_USAGE,
+                           "list: '%s' is not one of methods, scenes, metrics, plants, grammars",
+                           request.what);
     if (!status && out) {
         json_close(out);
         printf("%s\n", json_out_text(out));

@@ -9,6 +9,7 @@
 #include "plan/settings.h"
 #include "plant/images.h"
 #include "plant/import_steps.h"
+#include "plant/lsystem.h"
 #include "report/book.h"
 #include "results/calibration.h"
 #include "results/result.h"
@@ -181,11 +182,11 @@ static void fuzz_cell(struct fuzz *fuzz)
 /* The first byte chooses a table; what is taken is printed, read and printed again as the same. */
 static void fuzz_options(struct fuzz *fuzz)
 {
-    const struct option *tables[16] = {plan_settings_table};
+    const struct option *tables[32] = {plan_settings_table};
     size_t count = 1;
     for (const char *const *plant = plant_generators; *plant; plant++)
         tables[count++] = plant_options(*plant);
-    for (const struct method *const *each = methods_builtin; *each && count < 16; each++)
+    for (const struct method *const *each = methods_builtin; *each && count < 32; each++)
         tables[count++] = (*each)->options;
     if (fuzz->size == 0)
         return;
@@ -354,6 +355,37 @@ static void fuzz_image(struct fuzz *fuzz)
         frame_check(frame, &fuzz->error);
 }
 
+/* A grammar: what is taken grows, the same twice, or is refused for its size; every needle is
+ * finite. */
+static void fuzz_grammar(struct fuzz *fuzz)
+{
+    struct lsystem *lsystem = NULL;
+    struct conifer *conifer = NULL, *again = NULL;
+    enum status status =
+        lsystem_parse(fuzz->arena, fuzz_text(fuzz), "x.json", &lsystem, &fuzz->error);
+    if (!fuzz_accepted(fuzz, status, "x.json") ||
+        !fuzz_accepted(fuzz, lsystem_conifer(fuzz->arena, lsystem, &conifer, &fuzz->error),
+                       "x.json"))
+        return;
+    if (lsystem_conifer(fuzz->arena, lsystem, &again, &fuzz->error) != STATUS_OK ||
+        again->needles_count != conifer->needles_count)
+        fuzz_fail("a grammar grows the same twice", "needles");
+    uint64_t needles = 0;
+    for (size_t i = 0; i < conifer->twigs_count; i++) {
+        const struct conifer_twig *twig = &conifer->twigs[i];
+        float base_m[3], tip_m[3];
+        needles += (uint64_t)twig->cones_count * twig->needles_count;
+        if (!twig->cones_count || !twig->needles_count)
+            continue;
+        conifer_needle(twig, twig->cones_count - 1, twig->needles_count - 1, base_m, tip_m);
+        for (int k = 0; k < 3; k++)
+            if (!isfinite(base_m[k]) || !isfinite(tip_m[k]))
+                fuzz_fail("needles are somewhere", "needle");
+    }
+    if (needles != conifer->needles_count)
+        fuzz_fail("needles are counted", "needles");
+}
+
 static const struct fuzz_target {
     const char *name, *seeds; /* seeds: a folder of good inputs */
     bool slow;                /* a child for each input */
@@ -373,6 +405,7 @@ static const struct fuzz_target {
     {"packed", "tests/fuzz/seeds/packed", false, fuzz_packed},
     {"frame", "tests/fuzz/seeds/frame", false, fuzz_frame},
     {"image", "tests/fuzz/seeds/image", false, fuzz_image},
+    {"grammar", "scenes/plants", false, fuzz_grammar},
 };
 enum { FUZZ_TARGETS = sizeof fuzz_targets / sizeof *fuzz_targets };
 
