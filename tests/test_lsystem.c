@@ -244,7 +244,10 @@ static void test_grammars__have_the_needles_of_the_paper_and_of_their_own_produc
         grown(*state, "pine-complex", "branches=6,side_branches=4,cones=3,needles=7");
     assert_int_equal(c->needles_count, 6 * (4 + 1) * 3 * 7);
     c = grown(*state, "spruce", "whorls=5,boughs=3,pairs=2,cones=4,needles=6");
-    assert_int_equal(c->needles_count, (5 * 3 * (2 * 2 + 1) + 1) * 4 * 6);
+    /* Two pairs at least; each twig but the tree's tip has two shoots of half its cones. */
+    assert_int_equal(c->needles_count, (5 * 3 * (2 * 2 + 1) * (4 + 2 * 2) + 4) * 6);
+    c = grown(*state, "spruce", "whorls=4,boughs=1,pairs=8,cones=2,needles=1");
+    assert_int_equal(c->needles_count, (2 * (10 + 8 + 6 + 4) + 4) * (2 + 2 * 1) + 2);
     c = grown(*state, "larch", "boughs=9,pairs=3,cones=2,needles=5,seed=7");
     assert_int_equal(c->needles_count, (9 * (2 * 3 + 1) + 1) * 2 * 5);
 }
