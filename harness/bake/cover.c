@@ -5,12 +5,12 @@
 #include <string.h>
 
 /* SIDE: samples along each extent. Opposite sides see the same, so that SIDES is odd. */
-enum { SIDE = 160, SIDES = 5, BYTES = SIDE * SIDE };
+enum { SIDE = 160, SIDES = 5, LANES = 8, BYTES = SIDE * SIDE };
 
 struct cover {
     const struct mesh *mesh;
     const struct detail *detail;
-    float right[SIDES][3], up[SIDES][3]; /* samples a metre */
+    float right[3][LANES], up[3][LANES]; /* samples a metre, x y z of the sides; then zeros */
     float middle[2];
     double sample_m2;
     uint32_t bark; /* what the stencil holds; stout 0: nothing yet */
@@ -51,17 +51,46 @@ static size_t mark_triangle(uint8_t *hits, const float corners[3][2])
     return count;
 }
 
+static inline float least(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float most(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/* Whether whole numbers of 0..SIDE-1 lie between the least and the most of three. */
+static inline int meets_samples(float a, float b, float c)
+{
+    float low = most(least(least(a, b), c), 0), high = least(most(most(a, b), c), SIDE - 1);
+    int first = (int)least(low, SIDE);
+    return (float)first + (float)((float)first < low) <= high;
+}
+
+/* The sides side by side: most triangles of needles meet no sample, and that is found in all at
+ * once. */
 static void mark_sides(struct cover *cover, const float world[3][3])
 {
-    for (int side = 0; side < SIDES; side++) {
-        float corners[3][2];
-        const float *r = cover->right[side], *u = cover->up[side];
-        for (int i = 0; i < 3; i++) {
-            const float *p = world[i];
-            corners[i][0] = cover->middle[0] + r[0] * p[0] + r[2] * p[2];
-            corners[i][1] = cover->middle[1] + u[0] * p[0] + u[1] * p[1] + u[2] * p[2];
+    float x[3][LANES], y[3][LANES];
+    int meets[LANES];
+    for (int i = 0; i < 3; i++) {
+        const float *p = world[i];
+        for (int s = 0; s < LANES; s++) {
+            x[i][s] = cover->middle[0] + cover->right[0][s] * p[0] + cover->right[2][s] * p[2];
+            y[i][s] = cover->middle[1] + cover->up[0][s] * p[0] + cover->up[1][s] * p[1] +
+                      cover->up[2][s] * p[2];
         }
-        cover->hits_count += mark_triangle(cover->hits + side * BYTES, (const float(*)[2])corners);
+    }
+    for (int s = 0; s < LANES; s++)
+        meets[s] =
+            meets_samples(x[0][s], x[1][s], x[2][s]) & meets_samples(y[0][s], y[1][s], y[2][s]);
+    for (int s = 0; s < SIDES; s++) {
+        if (!meets[s])
+            continue;
+        const float corners[3][2] = {{x[0][s], y[0][s]}, {x[1][s], y[1][s]}, {x[2][s], y[2][s]}};
+        cover->hits_count += mark_triangle(cover->hits + s * BYTES, corners);
     }
 }
 
@@ -116,10 +145,12 @@ void cover_look(struct cover *cover, float elevation_rad, float margin_m)
     cover->middle[1] = SIDE / 2 - per_m[1] * level * middle_m;
     for (int side = 0; side < SIDES; side++) {
         float turn = 0.4f + 6.2831853f / SIDES * (float)side, c = cosf(turn), s = sinf(turn);
-        memcpy(cover->right[side], (float[3]){per_m[0] * c, 0, -per_m[0] * s}, sizeof(float[3]));
-        memcpy(cover->up[side],
-               (float[3]){-per_m[1] * rise * s, per_m[1] * level, -per_m[1] * rise * c},
-               sizeof(float[3]));
+        const float right[3] = {per_m[0] * c, 0, -per_m[0] * s};
+        const float up[3] = {-per_m[1] * rise * s, per_m[1] * level, -per_m[1] * rise * c};
+        for (int axis = 0; axis < 3; axis++) {
+            cover->right[axis][side] = right[axis];
+            cover->up[axis][side] = up[axis];
+        }
     }
     cover->stout = 0;
 }

@@ -102,6 +102,8 @@ struct packer {
     uint32_t *renumbered;  /* mesh vertex -> packed vertex + 1 of the part at work */
     uint16_t *widths;      /* of the mesh's vertices */
     float (*positions)[3]; /* of the packed vertices, for the simplifier */
+    size_t *ends; /* of a batch: its vertices come before, so that a pass over them does not
+                     walk over those of a million needles that were packed behind */
 };
 
 static uint32_t pack_vertex(struct packer *packer, uint32_t vertex, const struct material *material)
@@ -154,9 +156,9 @@ static enum material_kind part_kind(const struct mesh *mesh, size_t part)
 
 /* A better order for the vertex cache, and bark from wide to thin. */
 static void order_indices(const struct detail *detail, enum material_kind kind, uint32_t *indices,
-                          size_t count)
+                          size_t count, size_t vertices_count)
 {
-    simplify_order(indices, count, detail->vertices_count);
+    simplify_order(indices, count, vertices_count);
     if (kind == MATERIAL_BARK)
         stout_order(indices, count, detail->widths);
 }
@@ -177,12 +179,13 @@ static void pack_batch(struct packer *packer, struct arena *arena, size_t first_
     for (size_t p = first_part; p < mesh->parts_count; p++)
         if (part_texture(mesh, p) == texture && part_kind(mesh, p) == kind)
             pack_part(packer, &mesh->parts[p], batch);
+    packer->ends[batch - detail->batches] = detail->vertices_count;
     uint32_t *indices = detail->indices + batch->levels[0].first_index;
     size_t count = batch->levels[0].indices_count;
     batch->closed = kind == MATERIAL_BARK && !texture &&
                     detail_is_closed(arena, (const float(*)[3])packer->positions,
                                      detail->vertices_count, indices, count);
-    order_indices(detail, kind, indices, count);
+    order_indices(detail, kind, indices, count, detail->vertices_count);
 }
 
 static size_t level_triangles(const struct detail *detail, size_t level)
@@ -216,10 +219,10 @@ static bool add_level(struct packer *packer, float error_m)
             continue;
         float reached_m;
         uint32_t *indices = detail->indices + detail->indices_count;
-        size_t count = simplify_indices((const float(*)[3])packer->positions,
-                                        detail->vertices_count, detail->indices + full.first_index,
-                                        full.indices_count, error_m, indices, &reached_m);
-        order_indices(detail, batch->kind, indices, count);
+        size_t count = simplify_indices((const float(*)[3])packer->positions, packer->ends[b],
+                                        detail->indices + full.first_index, full.indices_count,
+                                        error_m, indices, &reached_m);
+        order_indices(detail, batch->kind, indices, count, packer->ends[b]);
         batch->levels[level] =
             (struct detail_range){(uint32_t)detail->indices_count, (uint32_t)count};
         detail->indices_count += count;
@@ -247,7 +250,8 @@ struct detail *detail_create(struct arena *arena, const struct mesh *mesh, bool 
     struct packer packer = {.detail = detail,
                             .mesh = mesh,
                             .renumbered = ARENA_ARRAY(arena, uint32_t, mesh->vertices_count),
-                            .positions = arena_alloc(arena, corners, sizeof(float[3]))};
+                            .positions = arena_alloc(arena, corners, sizeof(float[3])),
+                            .ends = ARENA_ARRAY(arena, size_t, mesh->parts_count)};
     packer.widths = stout_widths(arena, mesh);
     detail->widths = ARENA_ARRAY(arena, uint16_t, corners);
     detail->vertices = ARENA_ARRAY(arena, struct detail_vertex, corners);
