@@ -27,6 +27,17 @@ static int close_fixture(void **state)
     return 0;
 }
 
+/* From pictures of the plant with texels that are half of a pixel at 9 m across: more would only
+ * take longer. */
+static struct frame *draw(struct fixture *f, const char *options, const struct scene *scene,
+                          unsigned effects, const struct view *view, struct gl_counters *counters)
+{
+    const char *more = strstr(options, "resolution") ? "" : ",resolution=128";
+    return tree_draw(f->arena, f->method,
+                     *options ? arena_printf(f->arena, "%s%s", options, more) : more + 1, scene,
+                     effects, view, counters);
+}
+
 /* Against a plane's front and back the other plane is seen edge on, so the picture is the plane's
  * own. */
 static void test_cross_quads__front_and_back_have_the_plants_outline(void **state)
@@ -36,8 +47,7 @@ static void test_cross_quads__front_and_back_have_the_plants_outline(void **stat
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, (float)side * 1.5707963f, 0, 300, 9);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        struct frame *drawn =
-            tree_draw(f->arena, f->method, "alpha=blend", scene, lit, &view, NULL);
+        struct frame *drawn = draw(f, "alpha=blend", scene, lit, &view, NULL);
         double covered = tree_mean(truth, 3), off = tree_difference(drawn, truth, false);
         double mirrored = tree_difference(drawn, truth, true);
         if (off > 0.25 * covered || mirrored < 2.5 * off)
@@ -54,8 +64,7 @@ static void test_cross_quads__light_follows_the_sun_as_the_reference_does(void *
         struct view view = tree_view(scene, k < 4 ? 0 : 3.1415927f, 0, 300, 9);
         unsigned effects = k % 2 ? lit : EFFECT_AMBIENT | EFFECT_FOG;
         struct frame *truth = tree_reference(f->arena, scene, effects, &view);
-        struct frame *drawn =
-            tree_draw(f->arena, f->method, "alpha=blend", scene, effects, &view, NULL);
+        struct frame *drawn = draw(f, "alpha=blend", scene, effects, &view, NULL);
         double cover = tree_mean(drawn, 3) / tree_mean(truth, 3);
         for (int channel = 0; channel < 3; channel++) {
             double ratio = tree_mean(drawn, channel) / tree_mean(truth, channel) / cover;
@@ -111,10 +120,8 @@ static void test_cross_quads__half_planes_are_blended_from_back_to_front(void **
         struct scene *scene = tree_scene(f->arena, plant, 1, 1);
         scene->instances[0].rotation_rad = 0.7f * (float)k;
         struct view view = tree_view(scene, 0.2617994f * (float)k + 0.05f, 0.1f, 300, 9);
-        struct frame *blended =
-            tree_draw(f->arena, f->method, options[k % 3][0], scene, lit, &view, NULL);
-        struct frame *tested =
-            tree_draw(f->arena, f->method, options[k % 3][1], scene, lit, &view, NULL);
+        struct frame *blended = draw(f, options[k % 3][0], scene, lit, &view, NULL);
+        struct frame *tested = draw(f, options[k % 3][1], scene, lit, &view, NULL);
         /* apart from the edges, where one blends and the other does not */
         size_t wrong = 0, covered = 0;
         for (int i = 0; i < TREE_PIXELS; i++) {
@@ -144,8 +151,7 @@ static void test_cross_quads__a_picture_that_fills_its_layer_ends_at_the_border(
             struct scene *scene = tree_scene(f->arena, plant, 1, 1);
             float span_m = 40 + 3.1f * (float)i;
             struct view view = tree_view(scene, 0, 0, 3000, span_m);
-            drawn += tree_mean(
-                tree_draw(f->arena, f->method, options[k], scene, EFFECT_AMBIENT, &view, NULL), 3);
+            drawn += tree_mean(draw(f, options[k], scene, EFFECT_AMBIENT, &view, NULL), 3);
             wanted += 24 / (span_m * span_m);
         }
         if (fabs(drawn / wanted - 1) > 0.05)
@@ -160,12 +166,9 @@ static void test_cross_quads__every_way_keeps_the_same_coverage(void **state)
     for (int k = 0; k < 2; k++) {
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, 0.7853982f, 0.1f, 300, spans[k]);
-        double blend =
-            tree_mean(tree_draw(f->arena, f->method, "alpha=blend", scene, lit, &view, NULL), 3);
-        double coverage =
-            tree_mean(tree_draw(f->arena, f->method, "alpha=coverage", scene, lit, &view, NULL), 3);
-        double test =
-            tree_mean(tree_draw(f->arena, f->method, "alpha=test", scene, lit, &view, NULL), 3);
+        double blend = tree_mean(draw(f, "alpha=blend", scene, lit, &view, NULL), 3);
+        double coverage = tree_mean(draw(f, "alpha=coverage", scene, lit, &view, NULL), 3);
+        double test = tree_mean(draw(f, "alpha=test", scene, lit, &view, NULL), 3);
         if (fabs(coverage / blend - 1) > 0.03 || fabs(test / blend - 1) > 0.1)
             fail_msg("span %g: blended %g, coverage %g, tested %g", spans[k], blend, coverage,
                      test);
@@ -182,7 +185,7 @@ static void test_cross_quads__ten_thousand_trees_take_a_few_draw_calls(void **st
     }
     struct view view = tree_view(scene, 0.3f, 0.4f, 150, 60);
     struct gl_counters counters;
-    tree_draw(f->arena, f->method, "resolution=64", scene, lit, &view, &counters);
+    draw(f, "resolution=64", scene, lit, &view, &counters);
     assert_true(counters.draw_calls <= 4);
     assert_true(counters.triangles > 4000);
 }
@@ -196,7 +199,7 @@ static void test_cross_quads__an_eye_in_the_crown_is_drawn(void **state)
             struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
             float distance = k == 0 ? 0.5f : k == 1 ? 1e-3f : 1e-7f;
             struct view view = tree_view(scene, 0, k == 2 ? 1.5707963f : 0, distance, distance);
-            tree_draw(f->arena, f->method, options[i], scene, lit, &view, NULL);
+            draw(f, options[i], scene, lit, &view, NULL);
         }
 }
 
