@@ -57,8 +57,12 @@ WALL_SKIP := $(if $(GL_OSMESA),,harness/wall/gl_osmesa.c) $(if $(GL_EGL),,harnes
 # Kernels for a processor's own vectors: files of their own, with the flags that they need.
 ARCHITECTURE := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
 MARCH_SKIP := $(if $(filter x86_64,$(ARCHITECTURE)),harness/bake/march_isa_any.c harness/bake/cone_isa_any.c,$(addprefix harness/bake/,$(addprefix march_,isa_x86.c avx2.c avx512.c) cone_isa_x86.c cone_lanes_avx2.c))
-SOURCES := $(filter-out $(WALL_SKIP) $(MARCH_SKIP) harness/cli/treeline.c,$(sort $(wildcard harness/*/*.c))) \
-    $(sort $(wildcard methods/*.c))
+# A build for some tests alone holds the rooms that these can reach.
+ROOMS_thread := base wall stats plant scene truth
+ROOMS_fuzz := $(ROOMS_thread) method plan results report
+ROOMS := $(or $(ROOMS_$(config)),*)
+SOURCES := $(filter-out $(WALL_SKIP) $(MARCH_SKIP) harness/cli/treeline.c,$(sort $(wildcard $(ROOMS:%=harness/%/*.c)))) \
+    $(if $(filter *,$(ROOMS)),$(sort $(wildcard methods/*.c)))
 GENERATED_C := $(GEN)/methods_builtin.c $(GEN)/gl_load.c $(BUILD)/gl_backends.c
 GENERATED_H := $(GEN)/gl_functions.inc $(GEN)/build_facts.h \
     $(patsubst methods/%.glsl,$(GEN)/%.glsl.h,$(wildcard methods/*.glsl)) \
@@ -182,17 +186,21 @@ plugins: $(PLUGINS)
 
 T ?=
 CHOSEN := $(if $(T),$(T:%=$(BUILD)/tests/%),$(TESTS))
-test: $(CHOSEN) all
+test: $(CHOSEN) $(if $(filter *,$(ROOMS)),all,$(IMAGE_SO))
 	@tests/run.sh $(CHOSEN)
 
 new-method:
 	@methods/skeleton/new.sh
 
-# libFuzzer on the loaders, with clang's coverage and sanitizers in a build of its own.
+# libFuzzer on the loaders, with clang's coverage and sanitizers in a build of its own; what they call of the other
+# rooms is the sanitizers' build.
 FUZZ_SECONDS ?= 3600
-$(BUILD)/fuzz: tests/fuzz/fuzz.c tests/fuzz/targets.h $(ARCHIVE) $(IMAGE_SO)
-	$(CC) $(CFLAGS_ALL) -Itests $(LDFLAGS_ALL) -fsanitize=fuzzer -o $@ $< $(ARCHIVE) $(LIBS)
+SANITIZED := build/sanitize-clang/libtreeline.a
+$(BUILD)/fuzz: tests/fuzz/fuzz.c tests/fuzz/targets.h $(ARCHIVE) $(IMAGE_SO) $(wildcard $(SANITIZED))
+	$(CC) $(CFLAGS_ALL) -Itests $(LDFLAGS_ALL) -fsanitize=fuzzer -o $@ $< -Wl,--whole-archive $(ARCHIVE) \
+	    -Wl,--no-whole-archive $(SANITIZED) $(LIBS)
 fuzz-build:
+	@$(MAKE) --no-print-directory CC=clang config=sanitize $(SANITIZED)
 	@$(MAKE) --no-print-directory CC=clang config=fuzz build/fuzz-clang/fuzz
 fuzz: fuzz-build
 	@tests/fuzz.sh $(FUZZ_SECONDS) $(T)
