@@ -88,7 +88,7 @@ static void test_march__a_homogeneous_box_lets_exp_of_its_depth_through_from_any
                 for (int lane = 0; lane < MARCH_RAYS; lane++) {
                     assert_true(fabs(slab.rays.left[lane] - expected) < 2e-5);
                     /* Kajiya and Kay: a medium of radiance 1 gives 1 - T */
-                    assert_true(fabs(slab.rays.rgb[0][lane] + slab.rays.left[lane] - 1) < 1e-5);
+                    assert_true(fabs(slab.rays.rgb[lane][0] + slab.rays.left[lane] - 1) < 1e-5);
                 }
             }
     }
@@ -194,7 +194,7 @@ static void light_check(double cone, double evenness, double tolerance)
                 slab.job.sun[c] = 1.0f / 255;
             }
             isas[0].block(&slab.job, &slab.rays);
-            assert_true(fabs(slab.rays.rgb[1][0] - (sided ? single : two)) < tolerance);
+            assert_true(fabs(slab.rays.rgb[0][1] - (sided ? single : two)) < tolerance);
         }
     }
 }

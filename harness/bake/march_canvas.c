@@ -69,17 +69,16 @@ void canvas_shade(struct canvas *canvas, const struct march_view *picture)
 static void row_end(const struct march_rays *rays, int first, int count, float stop,
                     const float (*behind)[3], float *pixels)
 {
-    float gains[MARCH_BLOCK], lefts[MARCH_BLOCK];
-    for (int k = 0; k < MARCH_BLOCK; k++) {
-        float left = rays->left[first + k];
-        bool shut = left <= stop; /* what was left would have been more of the same */
-        gains[k] = 1 / (1 - (shut ? left : 0));
-        lefts[k] = shut ? 0 : left;
-    }
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; k++, pixels += 4) {
+        const float *rgb = rays->rgb[first + k], left = rays->left[first + k];
+        float gain = 1, rest = left;
+        if (left <= stop) { /* what was left would have been more of the same */
+            gain = 1 / (1 - left);
+            rest = 0;
+        }
         for (int c = 0; c < 3; c++)
-            pixels[4 * k + c] = gains[k] * rays->rgb[c][first + k] + lefts[k] * behind[k][c];
-        pixels[4 * k + 3] = 1 - lefts[k];
+            pixels[c] = gain * rgb[c] + rest * behind[k][c];
+        pixels[3] = 1 - rest;
     }
 }
 
@@ -141,7 +140,7 @@ static void splat_pixel(struct canvas *canvas, const struct march_splat *splat,
     float share = rays->left[lane] * splat_share(splat, area);
     rays->left[lane] -= share;
     for (int c = 0; c < 3; c++)
-        rays->rgb[c][lane] += share * splat->rgb[c];
+        rays->rgb[lane][c] += share * splat->rgb[c];
 }
 
 void canvas_splat(struct canvas *canvas, const struct march_splat *splat,

@@ -253,8 +253,8 @@ static void far_gather(const struct march_rays *rays, int column, int row, struc
         far->cover_m2 += cover;
         texel[3] += 0.25f * cover;
         for (int c = 0; c < 3; c++) {
-            far->rgb[c] += rays->rgb[c][lane];
-            texel[c] += 0.25f * rays->rgb[c][lane];
+            far->rgb[c] += rays->rgb[lane][c];
+            texel[c] += 0.25f * rays->rgb[lane][c];
         }
     }
 }
@@ -279,7 +279,7 @@ static void far_sun_add(const struct march_job *job, march_block *block, struct 
     block(&sun, rays);
     for (int lane = 0; lane < MARCH_RAYS; lane++)
         for (int c = 0; c < 3; c++)
-            far->sun_rgb[c] += rays->rgb[c][lane];
+            far->sun_rgb[c] += rays->rgb[lane][c];
 }
 
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,

@@ -64,39 +64,7 @@ static inline lanes arc_value(lanes x2)
     return 0.99953635f + x2 * (0.51276042f + x2 * (-0.0092389264f + x2 * 0.066520270f));
 }
 
-struct lanes_sample {
-    lanes depth;  /* optical, of a voxel's side */
-    lanes rgb[3]; /* radiance toward the eye */
-};
-
-/* What voxels' normals give: how much hides, and of what is seen the mean |N.L|, and the mean N.L
- * for N toward the eye. */
-struct lanes_facing {
-    lanes depth, even, toward;
-    lanes upright; /* of a stretched tree, the mean square of the normals' y in the plant */
-};
-
 static const float lanes_least = 1e-4f;
-
-/* The closures of voxels.h. */
-static inline struct lanes_facing facing_by_moments(const struct march_job *job,
-                                                    const lanes_int words[3])
-{
-    struct lanes_facing facing;
-    lanes entries[5], extinction;
-    memcpy(&extinction, &words[0], sizeof extinction);
-    matrix_entries(words[1], entries);
-    facing.depth =
-        extinction * lanes_sqrt(lanes_max(form_value(&job->hidden, entries), lanes_all(0)));
-    matrix_entries(words[2], entries);
-    lanes seen = lanes_max(form_value(&job->seen, entries), lanes_all(lanes_least));
-    lanes lit = lanes_max(form_value(&job->lit, entries), lanes_all(lanes_least));
-    facing.toward = form_value(&job->both, entries) / lanes_sqrt(seen);
-    facing.even = 0.63661977f * lanes_sqrt(lit) *
-                  arc_value(lanes_min(facing.toward * facing.toward / lit, lanes_all(1)));
-    facing.upright = job->raise != 0 ? form_value(&job->upright, entries) : lanes_all(0);
-    return facing;
-}
 
 static inline lanes terms_value(const float terms[VISIBLE_TERMS], lanes x)
 {
@@ -106,29 +74,80 @@ static inline lanes terms_value(const float terms[VISIBLE_TERMS], lanes x)
     return value;
 }
 
-/* Those of voxels_visible.h: words[1] is not read. */
-static inline struct lanes_facing facing_by_mean(const struct march_job *job,
-                                                 const lanes_int words[3])
+/* How much of the normals' mean lies along and across it (voxels_visible.h). */
+struct lanes_mean {
+    lanes n[3], square, side, to_eye, shown;
+};
+
+static inline struct lanes_mean mean_of(const struct march_job *job, lanes_int normals)
 {
-    const float *eye = job->toward_eye, *sun = job->toward_sun;
-    struct lanes_facing facing;
-    lanes extinction, n[3], square, to_eye, to_sun;
-    memcpy(&extinction, &words[0], sizeof extinction);
+    const float *eye = job->toward_eye;
+    struct lanes_mean mean;
     for (int i = 0; i < 3; i++)
-        n[i] = lanes_of(words[2] >> (10 * i) & 1023) * (1.0f / VISIBLE_ZERO) - 1;
-    square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    to_eye = n[0] * eye[0] + n[1] * eye[1] + n[2] * eye[2];
-    to_sun = n[0] * sun[0] + n[1] * sun[1] + n[2] * sun[2];
-    lanes rest = 1 - lanes_sqrt(square), per = 1 / square;
-    lanes side = terms_value(visible_side, rest), across = terms_value(visible_across, rest);
-    lanes least = lanes_all(lanes_least), along = (1 - 3 * across) * per;
-    lanes shown = lanes_max(side + (square - side) * per * to_eye * to_eye, least);
-    facing.depth = extinction * lanes_sqrt(shown / (square + 2 * side));
-    lanes seen = lanes_max(across + along * to_eye * to_eye, least);
+        mean.n[i] = lanes_of(normals >> (10 * i) & 1023) * (1.0f / VISIBLE_ZERO) - 1;
+    const lanes *n = mean.n;
+    mean.square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    mean.to_eye = n[0] * eye[0] + n[1] * eye[1] + n[2] * eye[2];
+    mean.side = terms_value(visible_side, 1 - lanes_sqrt(mean.square));
+    lanes along = (mean.square - mean.side) * (1 / mean.square);
+    mean.shown = lanes_max(mean.side + along * mean.to_eye * mean.to_eye, lanes_all(lanes_least));
+    return mean;
+}
+
+/* Optical depth of a voxel's side along the ray. */
+static inline lanes voxels_depth(const struct march_job *job, lanes_int at, lanes_mask mask)
+{
+    lanes_int words[4];
+    lanes extinction, entries[5];
+    if (job->by_mean) {
+        lanes_gather_four(job->voxels, at, mask, words);
+        struct lanes_mean mean = mean_of(job, words[2]);
+        memcpy(&extinction, &words[0], sizeof extinction);
+        return extinction * lanes_sqrt(mean.shown / (mean.square + 2 * mean.side));
+    }
+    lanes_gather_two(job->voxels, at, mask, words);
+    memcpy(&extinction, &words[0], sizeof extinction);
+    matrix_entries(words[1], entries);
+    return extinction * lanes_sqrt(lanes_max(form_value(&job->hidden, entries), lanes_all(0)));
+}
+
+/* What voxels' normals give of what is seen: the mean |N.L|, and the mean N.L for N toward the
+ * eye. */
+struct lanes_facing {
+    lanes even, toward;
+    lanes upright; /* of a stretched tree, the mean square of the normals' y in the plant */
+};
+
+/* The closures of voxels.h. */
+static inline struct lanes_facing facing_by_moments(const struct march_job *job, lanes_int normals)
+{
+    struct lanes_facing facing;
+    lanes entries[5];
+    matrix_entries(normals, entries);
+    lanes seen = lanes_max(form_value(&job->seen, entries), lanes_all(lanes_least));
+    lanes lit = lanes_max(form_value(&job->lit, entries), lanes_all(lanes_least));
+    facing.toward = form_value(&job->both, entries) / lanes_sqrt(seen);
+    facing.even = 0.63661977f * lanes_sqrt(lit) *
+                  arc_value(lanes_min(facing.toward * facing.toward / lit, lanes_all(1)));
+    facing.upright = job->raise != 0 ? form_value(&job->upright, entries) : lanes_all(0);
+    return facing;
+}
+
+/* Those of voxels_visible.h. */
+static inline struct lanes_facing facing_by_mean(const struct march_job *job, lanes_int normals)
+{
+    const float *sun = job->toward_sun;
+    struct lanes_facing facing;
+    const struct lanes_mean mean = mean_of(job, normals);
+    const lanes *n = mean.n, least = lanes_all(lanes_least);
+    lanes to_sun = n[0] * sun[0] + n[1] * sun[1] + n[2] * sun[2];
+    lanes across = terms_value(visible_across, 1 - lanes_sqrt(mean.square));
+    lanes along = (1 - 3 * across) * (1 / mean.square);
+    lanes seen = lanes_max(across + along * mean.to_eye * mean.to_eye, least);
     lanes lit = lanes_max(across * job->sun_square + along * to_sun * to_sun, least);
-    lanes both = across * job->cosine + along * to_eye * to_sun, product = seen * lit;
-    facing.toward = both / lanes_sqrt(shown);
-    facing.even = 0.63661977f * lanes_sqrt(product / shown) *
+    lanes both = across * job->cosine + along * mean.to_eye * to_sun, product = seen * lit;
+    facing.toward = both / lanes_sqrt(mean.shown);
+    facing.even = 0.63661977f * lanes_sqrt(product / mean.shown) *
                   arc_value(lanes_min(both * both / product, lanes_all(1)));
     facing.upright = across + along * n[1] * n[1];
     return facing;
@@ -170,35 +189,81 @@ static inline lanes sun_share(const struct march_sun *light, const lanes place[3
     return pass * (below + share[1] * (above - below)) * (1.0f / (255 * 255));
 }
 
-/* place: in the level's voxels; shaded: the sun has shadows. */
-static inline struct lanes_sample sample_voxels(const struct march_job *job, lanes_int at,
-                                                const lanes place[3], lanes_mask mask,
-                                                const bool shaded)
+/* Samples that hide some of what is seen through a ray, whose colours wait until there are enough
+ * of them to fill all lanes: rays end at different steps, and most steps meet voxels in a few. */
+enum { QUEUE_MAX = 8 * MARCH_RAYS };
+struct lanes_queue {
+    int count;
+    int32_t keys[QUEUE_MAX + MARCH_RAYS]; /* voxel x MARCH_RAYS + ray */
+    float shares[QUEUE_MAX + MARCH_RAYS]; /* of what the ray sees */
+    float middles_m[QUEUE_MAX + MARCH_RAYS];
+};
+
+/* The colours of LANES samples, added to their rays' in the samples' order. */
+static inline __attribute__((always_inline)) void shade(const struct march_job *job,
+                                                        struct march_rays *rays,
+                                                        const struct lanes_queue *queue, int first,
+                                                        const bool shaded)
 {
-    struct lanes_sample sample;
-    struct lanes_facing facing;
-    lanes_int words[4];
-    lanes_gather_four(job->voxels, at, mask, words);
-    lanes_int color = words[3];
+    lanes_int keys, words[2], all = (lanes_int){0};
+    memcpy(&keys, queue->keys + first, sizeof keys);
+    lanes share = lanes_load(queue->shares + first);
+    lanes_mask mask = lanes_int_less(all - 1, keys);
+    lanes_gather_two(job->voxels + 2, (keys >> 4) << 2, mask, words);
+    lanes_int color = words[1];
     lanes evenness = lanes_all(1);
+    struct lanes_facing facing;
     if (job->by_mean) {
-        facing = facing_by_mean(job, words);
+        facing = facing_by_mean(job, words[0]);
     } else {
-        facing = facing_by_moments(job, words);
+        facing = facing_by_moments(job, words[0]);
         evenness = 0.75f + lanes_of(color >> 24 & 15) * (1.0f / 60);
     }
-    sample.depth = facing.depth;
     lanes bark = lanes_of(color >> 28 & 15) * (1.0f / 15);
     lanes one_sided = lanes_max(bark, lanes_all(job->one_sided));
     lanes diffuse = lanes_max(
         (facing.even + 0.5f * one_sided * (facing.toward - facing.even)) / evenness, lanes_all(0));
     if (job->raise != 0)
         diffuse /= lanes_sqrt(lanes_max(1 + job->raise * facing.upright, lanes_all(lanes_least)));
-    if (shaded)
+    if (shaded) {
+        lanes column = lanes_of(keys & 3), row = lanes_of(keys >> 2 & 3), place[3];
+        lanes middle = lanes_load(queue->middles_m + first);
+        for (int i = 0; i < 3; i++)
+            place[i] = job->eye[i] +
+                       middle * (job->first[i] + column * job->right[i] + row * job->down[i]);
         diffuse *= sun_share(&job->light, place, bark, mask);
-    for (int c = 0; c < 3; c++)
-        sample.rgb[c] = lanes_of(color >> (8 * c) & 255) * (job->shade[c] + job->sun[c] * diffuse);
-    return sample;
+    }
+    lanes rgb[3];
+    for (int c = 0; c < 3; c++) {
+        lanes own = lanes_of(color >> (8 * c) & 255) * (job->shade[c] + job->sun[c] * diffuse);
+        rgb[c] = share * (job->fog[c] + job->clear * own);
+    }
+    lanes_scatter(rays->rgb, queue->keys + first, rgb);
+}
+
+/* All whole sets of lanes; the rest stays. */
+static inline void queue_shade(const struct march_job *job, struct march_rays *rays,
+                               struct lanes_queue *queue, const bool shaded)
+{
+    int at = 0;
+    for (; at + LANES <= queue->count; at += LANES)
+        shade(job, rays, queue, at, shaded);
+    queue->count -= at;
+    memcpy(queue->keys, queue->keys + at, LANES * sizeof *queue->keys);
+    memcpy(queue->shares, queue->shares + at, LANES * sizeof *queue->shares);
+    memcpy(queue->middles_m, queue->middles_m + at, LANES * sizeof *queue->middles_m);
+}
+
+/* The rest, too: filled up with what hides nothing. */
+static inline void queue_end(const struct march_job *job, struct march_rays *rays,
+                             struct lanes_queue *queue, const bool shaded)
+{
+    for (int i = 0; i < LANES; i++) {
+        queue->keys[queue->count + i] = 0;
+        queue->shares[queue->count + i] = queue->middles_m[queue->count + i] = 0;
+    }
+    for (int at = 0; at < queue->count; at += LANES)
+        shade(job, rays, queue, at, shaded);
 }
 
 /* Where rays enter and leave the level's box. */
@@ -207,7 +272,8 @@ static inline void box_cut(const struct march_job *job, const lanes ray[3], lane
     for (int i = 0; i < 3; i++) {
         lanes slow =
             lanes_pick(lanes_less(ray[i] * ray[i], lanes_all(1e-20f)), lanes_all(1e-10f), ray[i]);
-        lanes low = -job->eye[i] / slow, high = ((float)job->size[i] - job->eye[i]) / slow;
+        lanes per = 1 / slow, low = per * -job->eye[i];
+        lanes high = per * ((float)job->size[i] - job->eye[i]);
         *from = lanes_max(*from, lanes_min(low, high));
         *to = lanes_min(*to, lanes_max(low, high));
     }
@@ -224,72 +290,111 @@ static inline lanes_int cells_at(const struct march_job *job, const lanes ray[3]
     return lanes_gather(job->cells, index, alive);
 }
 
-/* True when something may still be seen through one of the rays. shaded: the sun has shadows. */
-static inline __attribute__((always_inline)) bool
-march_lanes(const struct march_job *job, struct march_rays *rays, int first, const bool shaded)
+/* LANES rays under way. */
+struct lanes_rays {
+    lanes ray[3], at, end, left, leap;
+    lanes_int key; /* numbers of the rays */
+    lanes_mask alive;
+};
+
+/* False where nothing can be seen through any of them. */
+static inline bool rays_begin(const struct march_job *job, const struct march_rays *rays, int first,
+                              struct lanes_rays *on)
 {
     static const float columns[MARCH_RAYS] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
     static const float rows[MARCH_RAYS] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-    lanes stop = lanes_all(job->stop), left = lanes_load(rays->left + first);
-    lanes_mask open = lanes_less(stop, left);
-    if (!lanes_any(open))
-        return false;
-    lanes ray[3], column = lanes_load(columns + first), row = lanes_load(rows + first);
+    on->left = lanes_load(rays->left + first);
+    lanes_mask open = lanes_less(lanes_all(job->stop), on->left);
+    lanes column = lanes_load(columns + first), row = lanes_load(rows + first);
     lanes steepest = lanes_all(1e-10f);
+    on->key = lanes_truncate(column + 4 * row);
     for (int i = 0; i < 3; i++) {
-        ray[i] = job->first[i] + column * job->right[i] + row * job->down[i];
-        steepest = lanes_max(steepest, lanes_max(ray[i], -ray[i]));
+        on->ray[i] = job->first[i] + column * job->right[i] + row * job->down[i];
+        steepest = lanes_max(steepest, lanes_max(on->ray[i], -on->ray[i]));
     }
-    lanes at = lanes_all(job->near_m), end = lanes_load(rays->depths_m + first);
-    end = lanes_min(end, lanes_all(job->far_m));
-    box_cut(job, ray, &at, &end);
-    lanes_mask alive = lanes_both(lanes_less(at, end), open);
-    if (!lanes_any(alive))
-        return true;
-    lanes leap = 1 / steepest, step = lanes_all(job->step / job->speed);
-    lanes rgb[3];
-    for (int c = 0; c < 3; c++)
-        rgb[c] = lanes_load(rays->rgb[c] + first);
+    on->at = lanes_all(job->near_m);
+    on->end = lanes_min(lanes_load(rays->depths_m + first), lanes_all(job->far_m));
+    box_cut(job, on->ray, &on->at, &on->end);
+    on->leap = 1 / steepest;
+    on->alive = lanes_both(lanes_less(on->at, on->end), open);
+    return lanes_any(open);
+}
+
+/* One voxel, or a jump over empty ones. Returns its lookups. */
+static inline __attribute__((always_inline)) int rays_step(const struct march_job *job,
+                                                           struct lanes_rays *on,
+                                                           struct lanes_queue *queue,
+                                                           float depth_per, const bool shaded)
+{
+    const lanes step = lanes_all(job->step / job->speed);
+    lanes length = lanes_min(step, on->end - on->at), middle = on->at + 0.5f * length;
+    lanes_int cell = cells_at(job, on->ray, middle, on->alive);
+    lanes_int behind = cell - VOXELS_FIRST;
+    lanes_mask full = lanes_both(lanes_int_less((lanes_int){0} - 1, behind), on->alive);
+    const int samples = lanes_count(full), lookups = lanes_count(on->alive);
+    if (samples) {
+        lanes pass = lanes_fade(voxels_depth(job, behind << 2, full) * length * depth_per);
+        lanes share = lanes_pick(full, on->left - on->left * pass, lanes_all(0));
+        on->left -= share;
+        lanes_pack(queue->keys + queue->count, queue->shares + queue->count,
+                   (behind << 4) + on->key, share, full);
+        if (shaded)
+            lanes_pack(queue->keys + queue->count, queue->middles_m + queue->count,
+                       (behind << 4) + on->key, middle, full);
+        queue->count += samples;
+    }
+    lanes far = middle + lanes_of(cell - 1) * on->leap;
+    on->at = lanes_pick(full, on->at + step, lanes_max(on->at + step, far));
+    on->alive = lanes_both(
+        lanes_both(lanes_less(on->at, on->end), lanes_less(lanes_all(job->stop), on->left)),
+        on->alive);
+    return lookups + (shaded ? 5 : 2) * samples;
+}
+
+enum { SETS = MARCH_RAYS / LANES };
+
+/* True when something may still be seen through one of the rays. All sets of lanes take a step by
+ * turns, so that one computes while another waits for its voxels. shaded: the sun has shadows. */
+static inline __attribute__((always_inline)) bool
+march_block_rays(const struct march_job *job, struct march_rays *rays, const bool shaded)
+{
+    struct lanes_rays on[SETS];
+    struct lanes_queue queue;
+    bool open = false, alive = false;
     const float depth_per = job->speed * (1 - job->thinned);
     int lookups = 0;
+    for (int set = 0; set < SETS; set++) {
+        open |= rays_begin(job, rays, set * LANES, &on[set]);
+        alive |= lanes_any(on[set].alive);
+    }
+    if (!alive)
+        return open;
+    queue.count = 0;
     do {
-        lanes length = lanes_min(step, end - at), middle = at + 0.5f * length;
-        lanes_int cell = cells_at(job, ray, middle, alive);
-        lanes_int behind = cell - VOXELS_FIRST;
-        lanes_mask full = lanes_both(lanes_int_less((lanes_int){0} - 1, behind), alive);
-        lookups += lanes_count(alive) + (shaded ? 5 : 2) * lanes_count(full);
-        if (lanes_any(full)) {
-            const lanes place[3] = {job->eye[0] + middle * ray[0], job->eye[1] + middle * ray[1],
-                                    job->eye[2] + middle * ray[2]};
-            struct lanes_sample sample = sample_voxels(job, behind << 2, place, full, shaded);
-            lanes pass = lanes_fade(sample.depth * length * depth_per);
-            lanes share = lanes_pick(full, left - left * pass, lanes_all(0));
-            left -= share;
-            for (int c = 0; c < 3; c++)
-                rgb[c] += share * (job->fog[c] + job->clear * sample.rgb[c]);
+        alive = false;
+        for (int set = 0; set < SETS; set++) {
+            if (!lanes_any(on[set].alive))
+                continue;
+            lookups += rays_step(job, &on[set], &queue, depth_per, shaded);
+            alive |= lanes_any(on[set].alive);
         }
-        lanes far = middle + lanes_of(cell - 1) * leap;
-        at = lanes_pick(full, at + step, lanes_max(at + step, far));
-        alive = lanes_both(lanes_both(lanes_less(at, end), lanes_less(stop, left)), alive);
-    } while (lanes_any(alive));
+        if (queue.count > QUEUE_MAX - MARCH_RAYS)
+            queue_shade(job, rays, &queue, shaded);
+    } while (alive);
+    queue_end(job, rays, &queue, shaded);
     rays->lookups += (uint64_t)lookups;
-    lanes_store(rays->left + first, left);
-    for (int c = 0; c < 3; c++)
-        lanes_store(rays->rgb[c] + first, rgb[c]);
-    return lanes_any(lanes_less(stop, left));
+    open = false;
+    for (int set = 0; set < SETS; set++) {
+        lanes_store(rays->left + set * LANES, on[set].left);
+        open |= lanes_any(lanes_less(lanes_all(job->stop), on[set].left));
+    }
+    return open;
 }
 
 static inline bool march_all(const struct march_job *job, struct march_rays *rays)
 {
-    bool open = false;
-    if (job->light.passes) {
-        for (int first = 0; first < MARCH_RAYS; first += LANES)
-            open |= march_lanes(job, rays, first, true);
-        return open;
-    }
-    for (int first = 0; first < MARCH_RAYS; first += LANES)
-        open |= march_lanes(job, rays, first, false);
-    return open;
+    return job->light.passes ? march_block_rays(job, rays, true)
+                             : march_block_rays(job, rays, false);
 }
 
 #endif

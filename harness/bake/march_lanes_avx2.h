@@ -2,6 +2,8 @@
 #ifndef TREELINE_BAKE_MARCH_LANES_AVX2_H
 #define TREELINE_BAKE_MARCH_LANES_AVX2_H
 
+#include "bake/march_orders_avx2.h"
+
 #include <immintrin.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -66,6 +68,24 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (__m256i)at, (__m256i)mask, 4);
 }
 
+/* Two words from each place, whatever where the mask is not set. */
+static inline void lanes_gather_two(const uint32_t *words, lanes_int at, lanes_mask mask,
+                                    lanes_int got[2])
+{
+    __m256 low, high;
+    __m128 pairs[4];
+    at &= mask;
+    for (int i = 0; i < 4; i++) {
+        const uint32_t *first = words + at[2 * i], *second = words + at[2 * i + 1];
+        pairs[i] = _mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)first));
+        pairs[i] = _mm_loadh_pi(pairs[i], (const __m64 *)(const void *)second);
+    }
+    low = _mm256_insertf128_ps(_mm256_castps128_ps256(pairs[0]), pairs[2], 1);
+    high = _mm256_insertf128_ps(_mm256_castps128_ps256(pairs[1]), pairs[3], 1);
+    got[0] = (lanes_int)_mm256_shuffle_ps(low, high, 0x88);
+    got[1] = (lanes_int)_mm256_shuffle_ps(low, high, 0xdd);
+}
+
 /* Four words from each place, whatever where the mask is not set. Eight loads and a transposition:
  * gathers of single words take twice the time. */
 static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_mask mask,
@@ -93,6 +113,37 @@ static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, la
 {
     return (lanes_int)_mm256_mask_i32gather_epi32(
         _mm256_setzero_si256(), (const int *)(const void *)bytes, (__m256i)at, (__m256i)mask, 1);
+}
+
+/* Where the mask is set, in their order; what follows them is overwritten, LANES in all. */
+static inline void lanes_pack(int32_t *keys, float *values, lanes_int key, lanes value,
+                              lanes_mask mask)
+{
+    const uint64_t *order = &lanes_orders[_mm256_movemask_ps((__m256)mask)];
+    __m256i from = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)order));
+    _mm256_storeu_si256((__m256i *)(void *)keys, _mm256_permutevar8x32_epi32((__m256i)key, from));
+    _mm256_storeu_ps(values, _mm256_permutevar8x32_ps((__m256)value, from));
+}
+
+/* Adds to the rays that the keys' lowest 4 bits name, one after the other. */
+static inline void lanes_scatter(float (*to)[4], const int32_t *keys, const lanes rgb[3])
+{
+    __m256 zero = _mm256_setzero_ps(), mixed[4];
+    mixed[0] = _mm256_unpacklo_ps((__m256)rgb[0], (__m256)rgb[1]);
+    mixed[1] = _mm256_unpackhi_ps((__m256)rgb[0], (__m256)rgb[1]);
+    mixed[2] = _mm256_unpacklo_ps((__m256)rgb[2], zero);
+    mixed[3] = _mm256_unpackhi_ps((__m256)rgb[2], zero);
+    __m256 pairs[4];
+    for (int i = 0; i < 2; i++) {
+        pairs[2 * i] = _mm256_shuffle_ps(mixed[i], mixed[i + 2], 0x44);
+        pairs[2 * i + 1] = _mm256_shuffle_ps(mixed[i], mixed[i + 2], 0xee);
+    }
+    for (int i = 0; i < LANES; i++) {
+        __m128 add =
+            i < 4 ? _mm256_castps256_ps128(pairs[i]) : _mm256_extractf128_ps(pairs[i - 4], 1);
+        float *ray = to[keys[i] & 15];
+        _mm_storeu_ps(ray, _mm_add_ps(_mm_loadu_ps(ray), add));
+    }
 }
 
 #endif

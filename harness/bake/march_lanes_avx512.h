@@ -66,6 +66,14 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (const int *)words, 4);
 }
 
+/* Two words from each place, whatever where the mask is not set. */
+static inline void lanes_gather_two(const uint32_t *words, lanes_int at, lanes_mask mask,
+                                    lanes_int got[2])
+{
+    for (int k = 0; k < 2; k++)
+        got[k] = lanes_gather(words + k, at, mask);
+}
+
 /* Four words from each place, whatever where the mask is not set. */
 static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_mask mask,
                                      lanes_int got[4])
@@ -79,6 +87,22 @@ static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, la
 {
     return (lanes_int)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)at,
                                                   (const void *)bytes, 1);
+}
+
+/* Where the mask is set, in their order; what follows them may be overwritten, LANES in all. */
+static inline void lanes_pack(int32_t *keys, float *values, lanes_int key, lanes value,
+                              lanes_mask mask)
+{
+    _mm512_mask_compressstoreu_epi32(keys, mask, (__m512i)key);
+    _mm512_mask_compressstoreu_ps(values, mask, (__m512)value);
+}
+
+/* Adds to the rays that the keys' lowest 4 bits name, one after the other. */
+static inline void lanes_scatter(float (*to)[4], const int32_t *keys, const lanes rgb[3])
+{
+    for (int i = 0; i < LANES; i++)
+        for (int c = 0; c < 3; c++)
+            to[keys[i] & 15][c] += rgb[c][i];
 }
 
 #endif

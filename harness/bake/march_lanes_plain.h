@@ -71,6 +71,14 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
     return got;
 }
 
+/* Two words from each place, whatever where the mask is not set. */
+static inline void lanes_gather_two(const uint32_t *words, lanes_int at, lanes_mask mask,
+                                    lanes_int got[2])
+{
+    for (int k = 0; k < 2; k++)
+        got[k] = lanes_gather(words + k, at, mask);
+}
+
 /* Four words from each place, whatever where the mask is not set. */
 static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_mask mask,
                                      lanes_int got[4])
@@ -86,6 +94,25 @@ static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, la
     for (int i = 0; i < LANES; i++)
         got[i] = mask[i] ? bytes[at[i]] | bytes[at[i] + 1] << 8 : 0;
     return got;
+}
+
+/* Where the mask is set, in their order; what follows them may be overwritten, LANES in all. */
+static inline void lanes_pack(int32_t *keys, float *values, lanes_int key, lanes value,
+                              lanes_mask mask)
+{
+    for (int i = 0, count = 0; i < LANES; i++) {
+        keys[count] = key[i];
+        values[count] = value[i];
+        count -= mask[i];
+    }
+}
+
+/* Adds to the rays that the keys' lowest 4 bits name, one after the other. */
+static inline void lanes_scatter(float (*to)[4], const int32_t *keys, const lanes rgb[3])
+{
+    for (int i = 0; i < LANES; i++)
+        for (int c = 0; c < 3; c++)
+            to[keys[i] & 15][c] += rgb[c][i];
 }
 
 #endif

@@ -8,8 +8,8 @@ enum { MARCH_BLOCK = 4, MARCH_RAYS = MARCH_BLOCK * MARCH_BLOCK };
 
 /* Front to back: what has been gathered, and how much is still seen behind it. */
 struct march_rays {
-    float left[MARCH_RAYS]; /* transmittance */
-    float rgb[3][MARCH_RAYS];
+    float left[MARCH_RAYS];     /* transmittance */
+    float rgb[MARCH_RAYS][4];   /* the fourth stays 0 */
     float depths_m[MARCH_RAYS]; /* of what is behind the trees, along the view */
     uint64_t lookups;           /* a cell is one, a voxel two, its shadow three, for each ray */
 } __attribute__((aligned(64)));

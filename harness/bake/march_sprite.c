@@ -61,7 +61,7 @@ static void pixel_over(struct canvas *canvas, int x, int y, four color, float sh
         scale = left * share_hides(color[3], share) / color[3];
     rays->left[lane] = left - scale * color[3];
     for (int c = 0; c < 3; c++)
-        rays->rgb[c][lane] += scale * color[c];
+        rays->rgb[lane][c] += scale * color[c];
 }
 
 /* What turns a texel into radiance and cover: own factors, and the fog's by its cover. */
