@@ -1,94 +1,6 @@
 /* Conifers by one cone a pixel: needles against closed forms, levels against the ray tracer, both
  * ways against each other. */
-#include "reference_world.h"
-
-#include "bake/cones.h"
-#include "plant/conifer.h"
-
-#include <stdlib.h>
-
-/* What is drawn unless a test says otherwise: all of it, at one level. */
-static struct cones_options options_of(int level)
-{
-    return (struct cones_options){.choice = {.forced = level, .needle_px = 6, .twig_px = 2.5f},
-                                  .shadows = true,
-                                  .edges = true};
-}
-
-/* Twigs on one hardly visible branch far below. */
-static struct plant *plant_of(struct arena *arena, const struct conifer_twig *twigs, size_t count)
-{
-    struct conifer *conifer = ARENA_NEW(arena, struct conifer);
-    struct error error = {0};
-    conifer->branches_count = 1;
-    conifer->branches = ARENA_NEW(arena, struct conifer_branch);
-    *conifer->branches = (struct conifer_branch){.from_m = {0, -0.1f, 0},
-                                                 .to_m = {0, -0.11f, 0},
-                                                 .radius_from_m = 1e-5f,
-                                                 .radius_to_m = 1e-5f,
-                                                 .twigs_count = (uint32_t)count};
-    conifer->twigs_count = count;
-    conifer->twigs = ARENA_ARRAY(arena, struct conifer_twig, count);
-    memcpy(conifer->twigs, twigs, count * sizeof *twigs);
-    conifer->needle_sides = 12;
-    for (int i = 0; i < 3; i++)
-        conifer->needle_albedo[i] = conifer->bark_albedo[i] = 0.5f;
-    conifer->needle_specular = 0.4f;
-    conifer->needle_exponent = 20;
-    if (conifer_finish(conifer, &error))
-        fail_msg("%s", error.text);
-    return plant_from_conifer(arena, "test", conifer);
-}
-
-static void plant_add(struct world *world, struct plant *plant)
-{
-    struct scene *scene = &world->scene;
-    scene->species[0] = (struct species){"test", plant, 1, 1, 1};
-    scene->species_count = 1;
-    scene->instances[scene->instances_count++] = (struct instance){{0, 0, 0}, 0, 1, 0, 1};
-}
-
-static struct frame *drawn(struct world *world, const struct cones_options *options,
-                           unsigned effects, int threads)
-{
-    struct error error = {0};
-    struct workspace workspace = {
-        .arena = world->arena, .error = &error, .effects = effects, .threads = threads};
-    struct frame *frame =
-        frame_create(world->arena, world->view.width_px, world->view.height_px, false);
-    struct target target = {frame->width_px, frame->height_px, TARGET_RGBA32F, 0, 0, 0,
-                            frame->rgba};
-    struct cones *cones;
-    if (cones_prepare(&workspace, &world->scene, options, &cones) ||
-        cones_draw(&workspace, cones, &world->view, &target))
-        fail_msg("%s", error.text);
-    return frame;
-}
-
-static double sum_of(const struct frame *frame, int channel)
-{
-    double sum = 0;
-    for (size_t i = 0; i < (size_t)frame->width_px * (size_t)frame->height_px; i++)
-        sum += frame->rgba[4 * i + (size_t)channel];
-    return sum;
-}
-
-/* A twig at the origin along a direction, as dense as the paper's. */
-static struct conifer_twig twig_along(double x, double y, double z)
-{
-    double length = sqrt(x * x + y * y + z * z);
-    return (struct conifer_twig){
-        .axis = {(float)(x / length), (float)(y / length), (float)(z / length)},
-        .length_m = 0.24f,
-        .axis_radius_m = 1e-5f,
-        .cones_count = 12,
-        .spacing_m = 0.02f,
-        .needles_count = 12,
-        .needle_length_m = 0.05f,
-        .needle_radius_m = 0.0005f,
-        .needle_angle_rad = 0.7f,
-        .azimuth_step_rad = 0.9f};
-}
+#include "conifer_world.h"
 
 static void test_conifers__a_needle_across_a_pixel_hides_its_width_of_it(void **state)
 {
@@ -322,6 +234,38 @@ static void test_conifers__the_fast_way_draws_what_the_straightforward_one_does(
     }
 }
 
+/* A ridge across the picture, higher than half of the trees behind it. */
+static void test_conifers__what_relief_hides_is_left_out_without_a_trace(void **state)
+{
+    (void)state;
+    struct world world = world_create(72, 70, 0.5);
+    struct scene *scene = &world.scene;
+    struct terrain *terrain = &scene->terrain;
+    plant_add(&world, bush(world.arena));
+    scene->instances[scene->instances_count++] = (struct instance){{0.4f, 0, -1}, 1, 1.3f, 0, 1};
+    scene->instances[scene->instances_count++] = (struct instance){{-0.5f, -1.2f, -3}, 2, 1, 0, 1};
+    world_ground(&world, 8, 0.4f);
+    terrain->samples_z = 5;
+    terrain->heights_m = ARENA_ARRAY(world.arena, float, 10);
+    terrain->normals = arena_alloc(world.arena, 10, sizeof *terrain->normals);
+    for (int i = 0; i < 10; i++) {
+        terrain->heights_m[i] = i / 2 == 3 ? 0.6f : i < 4 ? -1.5f : 0;
+        terrain->normals[i][1] = 1;
+    }
+    world_look(&world, 0, 0.9f, 3.5f, 0, 0.5f, 0);
+    world_sun(&world, 0.5, 0.7, 0.3);
+    struct cones_options options = options_of(-1);
+    struct frame *fast = drawn(&world, &options, EFFECT_SUN_SHADOWS, 2);
+    options.is_naive = true;
+    struct frame *naive = drawn(&world, &options, EFFECT_SUN_SHADOWS, 2);
+    assert_true(sum_of(fast, 3) > 50);
+    for (size_t i = 0; i < 72 * 70 * 4; i++)
+        if (!(fabsf(fast->rgba[i] - naive->rgba[i]) < 1e-3f))
+            fail_msg("pixel %zu: %g, straightforward %g", i / 4, (double)fast->rgba[i],
+                     (double)naive->rgba[i]);
+    arena_destroy(world.arena);
+}
+
 static void test_conifers__fewer_and_larger_twigs_cover_as_much(void **state)
 {
     (void)state;
@@ -374,6 +318,7 @@ int main(void)
         cmocka_unit_test(test_conifers__relief_before_half_a_pixel_leaves_half_to_what_is_behind),
         cmocka_unit_test(test_conifers__levels_turn_into_each_other_without_a_leap),
         cmocka_unit_test(test_conifers__the_fast_way_draws_what_the_straightforward_one_does),
+        cmocka_unit_test(test_conifers__what_relief_hides_is_left_out_without_a_trace),
         cmocka_unit_test(test_conifers__fewer_and_larger_twigs_cover_as_much),
         cmocka_unit_test(test_conifers__a_hundred_thousand_trees_take_less_than_256_bytes_each),
     };

@@ -34,7 +34,11 @@ static void room_for(struct cone_canvas *canvas, const struct view *view)
     canvas->across = (view->width_px + CONE_TILE - 1) / CONE_TILE;
     canvas->down = (view->height_px + CONE_TILE - 1) / CONE_TILE;
     const size_t tiles = (size_t)canvas->across * (size_t)canvas->down;
-    canvas->open = shadow_room(canvas->arena, canvas->open, tiles, &canvas->tiles_capacity, 1);
+    if (tiles > canvas->tiles_capacity) {
+        canvas->tiles_capacity = tiles;
+        canvas->open = ARENA_ARRAY(canvas->arena, uint8_t, tiles);
+        canvas->far_m = ARENA_ARRAY(canvas->arena, float, tiles);
+    }
     memset(canvas->open, 1, tiles);
     if (pixels <= canvas->pixels_capacity)
         return;
@@ -92,6 +96,12 @@ static void tile_begin(struct cone_canvas *canvas, size_t tile)
             canvas->edges[pixel] = -1;
         }
     backdrop_cpu_tile(canvas->backdrop, &part);
+    canvas->far_m[tile] = 0;
+    for (int row = 0; row < part.height_px; row++)
+        for (int column = 0; column < part.width_px; column++)
+            canvas->far_m[tile] =
+                fmaxf(canvas->far_m[tile],
+                      part.depths_m[(size_t)row * (size_t)canvas->width_px + (size_t)column]);
 }
 
 /* Samples of a fine block that belong to one pixel. */
@@ -166,8 +176,10 @@ static void edges_cut(struct workspace *workspace, struct cone_canvas *canvas,
     size_t count = 0;
     for (int y = 0; y < canvas->height_px; y++)
         for (int x = 0; x < canvas->width_px; x++)
-            if (is_edge(canvas, x, y))
+            if (is_edge(canvas, x, y)) {
                 canvas->edges[(size_t)y * (size_t)canvas->width_px + (size_t)x] = (int32_t)count++;
+                canvas->far_m[y / CONE_TILE * canvas->across + x / CONE_TILE] = INFINITY;
+            }
     if (count == 0)
         return;
     canvas->layers = shadow_room(canvas->arena, canvas->layers, CONE_LAYERS * count,
@@ -202,6 +214,28 @@ void cone_canvas_begin(struct workspace *workspace, struct cone_canvas *canvas,
         tile_begin(canvas, tile);
     if (canvas->fine)
         edges_cut(workspace, canvas, view);
+}
+
+bool cone_canvas_sees(const struct cone_canvas *canvas, const float place_px[2], float reach_px,
+                      float nearest_m)
+{
+    const float per_tile = 1.0f / CONE_TILE;
+    const float left = (place_px[0] - reach_px) * per_tile,
+                top = (place_px[1] - reach_px) * per_tile;
+    const float right = (place_px[0] + reach_px) * per_tile;
+    const float bottom = (place_px[1] + reach_px) * per_tile;
+    if (!(right >= 0 && bottom >= 0 && left < (float)canvas->across && top < (float)canvas->down))
+        return false;
+    const int first = left > 0 ? (int)left : 0, low = top > 0 ? (int)top : 0;
+    const int last = right < (float)canvas->across ? (int)right : canvas->across - 1;
+    const int high = bottom < (float)canvas->down ? (int)bottom : canvas->down - 1;
+    for (int row = low; row <= high; row++)
+        for (int column = first; column <= last; column++) {
+            const int tile = row * canvas->across + column;
+            if (canvas->open[tile] && nearest_m < canvas->far_m[tile])
+                return true;
+        }
+    return false;
 }
 
 /* What is nearer than a depth is seen as it is by now. */

@@ -30,6 +30,7 @@ struct cone_canvas {
     int32_t *edges; /* of a pixel: -1, or which of the layers' fours */
     struct cone_layer *layers;
     uint8_t *open; /* a tile */
+    float *far_m;  /* of a tile's relief; INFINITY: sky, or an edge */
     struct backdrop_rays rays;
     float eye_m[3];
 };
@@ -40,6 +41,10 @@ struct cone_canvas *cone_canvas_create(struct workspace *workspace, const struct
 /* Sky and relief of a view, nothing before them. */
 void cone_canvas_begin(struct workspace *workspace, struct cone_canvas *canvas,
                        const struct view *view);
+/* Whether what is within so many pixels of a place on the screen, and no nearer than a depth, may
+ * be seen. */
+bool cone_canvas_sees(const struct cone_canvas *canvas, const float place_px[2], float reach_px,
+                      float nearest_m);
 /* Puts a strip's share w > 0 of a pixel over what is behind all that came before. */
 void cone_canvas_put(struct cone_canvas *canvas, size_t pixel, const struct cone_strip *strip,
                      const struct cone_place *place, float w);

@@ -65,6 +65,17 @@ void cone_tree_of(const struct cone_picture *picture, size_t index, struct cone_
         cone_lights_of_tree(picture->lights, index, &tree->light);
 }
 
+bool cone_picture_sees(const struct cone_picture *picture, const float middle_m[3], float radius_m)
+{
+    const float nearest_m = middle_m[2] - radius_m, px = picture->focal_px / middle_m[2];
+    if (!picture->canvas || nearest_m <= picture->view->near_m)
+        return true;
+    const float place_px[2] = {0.5f * (float)picture->view->width_px + px * middle_m[0],
+                               0.5f * (float)picture->view->height_px - px * middle_m[1]};
+    return cone_canvas_sees(picture->canvas, place_px,
+                            1.5f * picture->focal_px / nearest_m * radius_m + 2, nearest_m);
+}
+
 void cone_to_camera(const struct cone_tree *tree, const float place_m[3], float camera_m[3])
 {
     for (int k = 0; k < 3; k++)

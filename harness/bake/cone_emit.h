@@ -3,6 +3,7 @@
 #ifndef TREELINE_BAKE_CONE_EMIT_H
 #define TREELINE_BAKE_CONE_EMIT_H
 
+#include "bake/cone_canvas.h"
 #include "bake/cone_lanes.h"
 #include "bake/cone_light.h"
 #include "bake/cone_shade.h"
@@ -31,6 +32,7 @@ struct cone_picture {
     void (*shade)(struct cone_lanes_job *job); /* twigs by lanes; NULL: one by one */
     struct cone_plant *const *plants;
     const struct cone_lights *lights; /* NULL: the sun has no shadows */
+    const struct cone_canvas *canvas; /* what it hides is left out; NULL: nothing is */
 };
 
 /* An instance as the picture has it. Camera: right, up, forward. */
@@ -44,6 +46,8 @@ struct cone_tree {
     float twigs_grown, barks_grown; /* how much more area each then has */
     struct cone_tree_light light;
 };
+/* Whether anything within a sphere around a place of the camera's may be seen. */
+bool cone_picture_sees(const struct cone_picture *picture, const float middle_m[3], float radius_m);
 void cone_tree_of(const struct cone_picture *picture, size_t instance, struct cone_tree *tree);
 
 /* Shares of the levels, which sum to 1. */

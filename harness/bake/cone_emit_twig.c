@@ -148,6 +148,9 @@ static bool view_of(const struct cone_picture *picture, const struct cone_tree *
     cone_to_camera(tree, middle_m, camera_m);
     if (camera_m[2] + tree->scale * reach_m <= picture->view->near_m)
         return false;
+    seen->grown = tree->twigs_grown * fminf(tree->twigs - (float)index, 1);
+    if (!cone_picture_sees(picture, camera_m, tree->scale * reach_m * sqrtf(fmaxf(seen->grown, 1))))
+        return false;
     for (int i = 0; i < 3; i++)
         seen->eye[i] = tree->eye_m[i] - middle_m[i];
     float away = fmaxf(sqrtf(dot3(seen->eye, seen->eye)), 1e-20f);
@@ -161,7 +164,6 @@ static bool view_of(const struct cone_picture *picture, const struct cone_tree *
     seen->sight.exponent = picture->effects & EFFECT_SPECULAR && conifer->needle_specular > 0
                                ? conifer->needle_exponent
                                : -1;
-    seen->grown = tree->twigs_grown * fminf(tree->twigs - (float)index, 1);
     seen->gain = tree->light.cones ? cone_tree_light_gain(&tree->light, middle_m) : 1;
     seen->mix = mix_at(picture, tree, twig, camera_m[2], tree->scale * away);
     return true;

@@ -63,6 +63,7 @@ static struct cone_picture picture_of(const struct workspace *workspace, const s
         .shade = cones->shade,
         .plants = cones->plants,
         .lights = cones->lights,
+        .canvas = cones->naive ? NULL : cones->canvas,
     };
     memcpy(picture.sun, scene->sun.radiance, sizeof picture.sun);
     if (effects & EFFECT_AMBIENT)

@@ -1,6 +1,7 @@
 /* All cones of a picture together: trees front to back in batches, each descended once to strips,
  * strips sorted by depth and binned to tiles, tiles composed by all threads. Trees behind tiles
  * that are closed are left out. */
+#include "bake/cone_emit_parts.h"
 #include "bake/cones_parts.h"
 #include "bake/march_shadow_parts.h"
 
@@ -61,30 +62,11 @@ struct cones_fast *cones_fast_create(struct arena *arena, const struct cones *co
 }
 
 /* Whether a tree may be seen through tiles that are not closed. */
-static bool tree_is_open(const struct cones *cones, const struct cone_picture *picture,
-                         const struct cone_tree *tree)
+static bool tree_is_open(const struct cone_picture *picture, const struct cone_tree *tree)
 {
-    const struct cone_canvas *canvas = cones->canvas;
-    const float *c = tree->plant->center_m, radius_m = tree->scale * tree->plant->radius_m;
-    float middle[3];
-    for (int k = 0; k < 3; k++)
-        middle[k] = tree->foot_m[k] + tree->to_camera[k][0] * c[0] + tree->to_camera[k][1] * c[1] +
-                    tree->to_camera[k][2] * c[2];
-    if (middle[2] - radius_m <= picture->view->near_m)
-        return true;
-    float px = picture->focal_px / (middle[2] - radius_m);
-    float reach = px * radius_m * 1.5f + 2;
-    px = picture->focal_px / middle[2];
-    float x = 0.5f * (float)canvas->width_px + px * middle[0];
-    float y = 0.5f * (float)canvas->height_px - px * middle[1];
-    int left = (int)fmaxf((x - reach) / CONE_TILE, 0), top = (int)fmaxf((y - reach) / CONE_TILE, 0);
-    int right = (int)fminf((x + reach) / CONE_TILE, (float)(canvas->across - 1));
-    int bottom = (int)fminf((y + reach) / CONE_TILE, (float)(canvas->down - 1));
-    for (int row = top; row <= bottom; row++)
-        for (int column = left; column <= right; column++)
-            if (canvas->open[row * canvas->across + column])
-                return true;
-    return false;
+    float middle_m[3];
+    cone_to_camera(tree, tree->plant->center_m, middle_m);
+    return cone_picture_sees(picture, middle_m, tree->scale * tree->plant->radius_m);
 }
 
 /* Where the next batch begins: a tree of the list and one of its items. */
@@ -129,7 +111,7 @@ static size_t batch_cut(struct cones *cones, const struct cone_picture *picture,
     while (at->tree < list->count && jobs < JOBS && strips < STRIPS && trees < TREES) {
         struct cone_tree *tree = &fast->trees[trees];
         cone_tree_of(picture, list->instances[at->tree], tree);
-        if (tree_is_open(cones, picture, tree)) {
+        if (tree_is_open(picture, tree)) {
             strips = tree_cut(cones, picture, trees++, &at->item, &jobs, strips);
             size_t items = (size_t)ceilf(tree->twigs) + (size_t)ceilf(tree->barks);
             if (at->item < items)
