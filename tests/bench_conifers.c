@@ -1,8 +1,9 @@
 /* Conifers: the fast way beside the straightforward one, and at equal error beside the tracer.
  *
- *     bench_conifers [scene [trees [rounds [method options]]]]      pines 204 5
+ *     bench_conifers [scene [trees [rounds [parts [method options...]]]]]      pines 204 5 fnt
  *
- * Light is that which the method models, on both sides. The truth is a traced picture of many
+ * Parts: f the fast way, n the straightforward one too, t the tracer. Several options: each of
+ * them. Light is that which the method models, on both sides. The truth is a traced picture of many
  * samples; then the tracer's error and time at 4, 8, 16... samples a pixel, and from these the
  * samples and the time that it needs for the method's error, by a power law between two counts.
  * Run it on an idle machine. */
@@ -16,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS_LIMIT = 99, TRUTH_SAMPLES = 512, STEPS = 6 };
+enum { ROUNDS_LIMIT = 99, TRUTH_SAMPLES = 256, STEPS = 5 };
 
 struct bench {
     struct arena *arena;
@@ -84,33 +85,39 @@ static double rmse(const struct frame *a, const struct frame *b, int side)
     return sqrt(sum / (double)count);
 }
 
-static enum status ways_compare(const struct bench *bench, const char *options, int rounds,
-                                struct way *fast, double *seconds, struct error *error)
+static void seconds_say(const char *name, const double *seconds, int rounds)
+{
+    struct interval all = stats_median_interval(seconds, (size_t)rounds, 1);
+    printf("%-10s %.4f s [%.4f, %.4f] of %d frames\n", name, all.value, all.low, all.high, rounds);
+}
+
+/* Median seconds of the fast way, NaN after an error. */
+static double ways_compare(const struct bench *bench, const char *options, int rounds,
+                           bool with_naive, struct way *fast, struct error *error)
 {
     struct way naive;
     double times[2][ROUNDS_LIMIT];
-    enum status status = way_open(bench, options, fast, error);
     const char *more = arena_printf(bench->arena, "%s%spath=naive", options, *options ? "," : "");
-    if (!status)
-        status = way_open(bench, more, &naive, error);
-    if (status)
-        return status;
-    printf("first frame, with the sun's light: fast %.3f s", way_seconds(bench, fast));
-    printf(", naive %.3f s\n", way_seconds(bench, &naive));
+    if (way_open(bench, options, fast, error) ||
+        (with_naive && way_open(bench, more, &naive, error)))
+        return NAN;
+    printf("'%s': first frame, with the sun's light, %.3f s\n", options, way_seconds(bench, fast));
+    if (with_naive)
+        way_seconds(bench, &naive);
     for (int round = 0; round < rounds; round++) {
         times[0][round] = way_seconds(bench, fast);
-        times[1][round] = way_seconds(bench, &naive);
+        times[1][round] = with_naive ? way_seconds(bench, &naive) : 1;
     }
-    for (int k = 0; k < 2; k++) {
-        struct interval all = stats_median_interval(times[k], (size_t)rounds, 1);
-        printf("%-10s %.4f s [%.4f, %.4f] of %d frames\n", k ? "naive" : "fast", all.value, all.low,
-               all.high, rounds);
+    seconds_say("fast", times[0], rounds);
+    printf("strips     %.0f a frame\n",
+           (double)fast->workspace.tally.lookups / (double)(rounds + 1));
+    if (with_naive) {
+        seconds_say("naive", times[1], rounds);
+        struct interval ratio = stats_ratio_interval(times[1], times[0], (size_t)rounds, 1);
+        printf("ratio      %.2f [%.2f, %.2f]; the pictures differ by %.2g RMSE\n", ratio.value,
+               ratio.low, ratio.high, rmse(fast->frame, naive.frame, 1));
     }
-    struct interval ratio = stats_ratio_interval(times[1], times[0], (size_t)rounds, 1);
-    printf("ratio      %.2f [%.2f, %.2f]; the pictures differ by %.2g RMSE\n", ratio.value,
-           ratio.low, ratio.high, rmse(fast->frame, naive.frame, 1));
-    *seconds = stats_median(times[0], (size_t)rounds);
-    return STATUS_OK;
+    return stats_median(times[0], (size_t)rounds);
 }
 
 /* Samples, seconds and errors of the tracer, one row a step. */
@@ -178,23 +185,28 @@ static enum status bench_run(struct bench *bench, int argc, char **argv, struct 
     printf("%s, %zu trees, %d x %d px, %d threads\n", bench->scene->name,
            bench->scene->instances_count, bench->view.width_px, bench->view.height_px,
            bench->threads);
-    struct way fast;
-    double seconds = 0, rows[STEPS][4];
-    struct frame *truth;
+    const char *parts = argc > 4 ? argv[4] : "fnt";
+    double rows[STEPS][4];
+    struct frame *truth = NULL;
     struct reference_options most = {.effects = bench->effects,
                                      .samples_min = TRUTH_SAMPLES,
                                      .samples_max = TRUTH_SAMPLES,
                                      .threads = bench->threads,
                                      .quiet = true};
     struct reference_stats stats;
-    status = ways_compare(bench, argc > 4 ? argv[4] : "", rounds, &fast, &seconds, error);
-    if (!status)
+    if (strchr(parts, 't'))
         status = reference_cached(bench->arena, bench->scene, &bench->view, &most, &truth, &stats,
                                   error);
-    if (!status)
+    if (!status && truth)
         status = tracer_rows(bench, truth, rows, error);
-    for (int column = 2; column < 4 && !status; column++)
-        equal_error(rows, column, rmse(fast.frame, truth, column == 2 ? 1 : 4), seconds);
+    for (int k = 5; (k < argc || k == 5) && !status; k++) {
+        struct way fast;
+        double seconds = ways_compare(bench, k < argc ? argv[k] : "", rounds,
+                                      strchr(parts, 'n') != NULL, &fast, error);
+        status = error->status;
+        for (int column = 2; column < 4 && !status && truth; column++)
+            equal_error(rows, column, rmse(fast.frame, truth, column == 2 ? 1 : 4), seconds);
+    }
     return status;
 }
 
