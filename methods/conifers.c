@@ -4,11 +4,13 @@
  * or twigs by distance, and composes by coverage. Mended here: what its integrals lose
  * (bake/needles.h; shaders=paper has them as printed), the relief, which shares a pixel by depth
  * and a mask (bake/cone_canvas.h), shadows between twigs and trees (bake/cone_light.h), and levels
- * that turn into each other. *
- * Not by OpenGL: 204 pines of 800 x 600 pixels are 542,544 strips a frame, and llvmpipe draws 3.2 to
- * 3.5 million bare quads of 2 pixels a second on two cores (treeline calibrate, quads_2px): 0.16 s
- * before one of them is shaded, of 0.40 s for all of a frame here, where putting strips to pixels
- * takes a sixth. Ambient light is not attenuated: sky-occlusion is none of this method's effects. */
+ * that turn into each other.
+ *
+ * Not by OpenGL: 204 pines of 800 x 600 pixels are 542,544 strips a frame, and llvmpipe draws 3.2
+ * to 3.5 million bare quads of 2 pixels a second on two cores (treeline calibrate, quads_2px): 0.16
+ * s before one of them is shaded, of 0.40 s for all of a frame here, where putting strips to pixels
+ * takes a sixth. Ambient light is not attenuated: sky-occlusion is none of this method's effects.
+ */
 #include "bake/cones.h"
 
 struct options {
