@@ -142,11 +142,11 @@ if python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); assert d["cells"
 else
   bad 'the table as JSON' "$(head -c 300 "$work/out")"
 fi
-if python3 - "$work/run/cells.jsonl" <<'P'; then ok 'every line is strict JSON of version 4'; else bad 'every line is strict JSON of version 4'; fi
+if python3 - "$work/run/cells.jsonl" <<'P'; then ok 'every line is strict JSON of version 5'; else bad 'every line is strict JSON of version 5'; fi
 import json, sys
 def no(x): raise ValueError(x)
 for line in open(sys.argv[1]):
-    assert json.loads(line, parse_constant=no)["version"] == 4
+    assert json.loads(line, parse_constant=no)["version"] == 5
 P
 
 once=(--frame-seconds 0.02 --frames-max 5 --views 1 --reference-error 0.1 --reference-samples 16 -q)

@@ -406,7 +406,7 @@ static void check_refused(const char *from, const char *to, const char *word)
 static void test_calibration__a_malformed_line_names_key_and_value(void **state)
 {
     (void)state;
-    check_refused("\"version\":4", "\"version\":5", "this treeline reads version 1 to 4");
+    check_refused("\"version\":5", "\"version\":6", "this treeline reads version 1 to 5");
     check_refused(CALIBRATION_KIND, "treeline-run", CALIBRATION_KIND);
     check_refused("\"rgba8\"", "\"rgb\"", "rgba8|rgba16f|rgba32f");
     check_refused("\"threads\":2", "\"threads\":0", "threads");

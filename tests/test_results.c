@@ -62,6 +62,10 @@ static void any_view(struct random *random, struct result_view *view)
     any_metrics(random, &view->full.value);
     any_metrics(random, &view->full.raw);
     any_metrics(random, &view->full.floor);
+    view->masked = random_below(random, 2);
+#define ANY(field, word, better, unit, doc) view->mask.field = any_double(random);
+    MASK_LIST(ANY)
+#undef ANY
     view->same_standard_error = random_float(random);
     view->full_standard_error = random_float(random);
 }
@@ -136,6 +140,12 @@ static void same_view(const struct result_view *a, const struct result_view *b)
     assert_true(a->picture_hash == b->picture_hash && a->same_key == b->same_key);
     assert_true(a->full_key == b->full_key && a->compared == b->compared);
     same_text(a->picture, b->picture);
+    assert_true(a->masked == b->masked);
+#define SAME(field, word, better, unit, doc)                                                       \
+    if (a->masked)                                                                                 \
+        same_double(a->mask.field, b->mask.field, word);
+    MASK_LIST(SAME)
+#undef SAME
     if (!a->compared)
         return;
     same_metrics(&a->same.value, &b->same.value);
@@ -308,8 +318,8 @@ static void test_run__what_is_no_run_is_refused_and_left_as_it_is(void **state)
     static const char *const texts[] = {
         "a thesis without an end",
         "two lines\nof a thesis",
-        "{\"version\":5,\"kind\":\"treeline-run\"",
-        "{\"version\":5,\"kind\":\"treeline-run\"}\n{\"version\":5,\"cell\":\"cut",
+        "{\"version\":6,\"kind\":\"treeline-run\"",
+        "{\"version\":6,\"kind\":\"treeline-run\"}\n{\"version\":6,\"cell\":\"cut",
     };
     struct arena *arena = arena_create(0);
     struct error error = {0};
@@ -359,9 +369,9 @@ static void test_run__a_malformed_line_is_named_by_its_number(void **state)
     bad_file(arena_printf(arena, "%s\n%s\n\n%s\n", first, good, good), "cells.jsonl:3", "JSON");
     bad_file(arena_printf(arena, "%s\n{\"version\":1}\n%s\n", first, good), "cells.jsonl:2",
              "cell: is missing");
-    bad_file(arena_printf(arena, "%s\n{\"version\":5}\n", first), "cells.jsonl:2",
-             "version 1 to 4");
-    bad_file("{\"version\":5,\"kind\":\"treeline-run\"}\n", "cells.jsonl:1", "version 1 to 4");
+    bad_file(arena_printf(arena, "%s\n{\"version\":6}\n", first), "cells.jsonl:2",
+             "version 1 to 5");
+    bad_file("{\"version\":6,\"kind\":\"treeline-run\"}\n", "cells.jsonl:1", "version 1 to 5");
     bad_file("{\"version\":1}\n", "cells.jsonl:1", "treeline-run");
     bad_file("", "no whole line", "provenance");
     char *unknown = arena_printf(arena, "{\"more\":1,%s", good + 1);

@@ -198,7 +198,7 @@ static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
     if (backdrop->chunks_count == 0)
         return;
     bool above = eye_is_above(&scene->terrain, view->eye_m);
-    bool smooth = above && backdrop->smooth_program;
+    bool smooth = above && backdrop->smooth_program && !workspace->masked;
     GLuint program = smooth ? backdrop->smooth_program : backdrop->terrain_program;
     gl->UseProgram(program);
     gl->BindVertexArray(backdrop->terrain_vertices);
@@ -231,7 +231,8 @@ static void draw_sky(struct workspace *workspace, const struct backdrop *backdro
                      const struct view *view)
 {
     struct gl *gl = workspace->gl;
-    const struct sky *sky = &backdrop->scene->sky;
+    static const struct sky nothing = {{0}, {0}, {0}};
+    const struct sky *sky = workspace->masked ? &nothing : &backdrop->scene->sky;
     GLuint program = backdrop->sky_program;
     float up = tanf(0.5f * view->fov_y_rad);
     float right = up * (float)view->width_px / (float)view->height_px;
@@ -289,6 +290,7 @@ void shade_uniforms(struct workspace *workspace, GLuint program, const struct sc
     gl->Uniform3fv(gl_uniform(gl, program, "ambient"), 1, ambient);
     gl->Uniform3fv(gl_uniform(gl, program, "fog_color"), 1, scene->fog.color);
     gl->Uniform1f(gl_uniform(gl, program, "fog_density"),
-                  effects & EFFECT_FOG ? scene->fog.density_per_m : 0);
+                  effects & EFFECT_FOG && !workspace->masked ? scene->fog.density_per_m : 0);
+    gl->Uniform1i(gl_uniform(gl, program, "masked"), workspace->masked);
     gl->Uniform1i(gl_uniform(gl, program, "two_sided"), (effects & EFFECT_TWO_SIDED) != 0);
 }

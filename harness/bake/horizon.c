@@ -118,7 +118,8 @@ void horizon_draw(struct workspace *workspace, const struct horizon *horizon,
 {
     struct gl *gl = workspace->gl;
     const struct terrain *terrain = &horizon->scene->terrain;
-    const struct sky *sky = &horizon->scene->sky;
+    static const struct sky nothing = {{0}, {0}, {0}};
+    const struct sky *sky = workspace->masked ? &nothing : &horizon->scene->sky;
     GLuint program = horizon->program;
     GLint samples = 0;
     gl->GetIntegerv(GL_SAMPLES, &samples);

@@ -7,19 +7,30 @@ uniform vec3 ambient;        // 0 without EFFECT_AMBIENT
 uniform vec3 fog_color;
 uniform float fog_density;   // 1/m, 0 without EFFECT_FOG
 uniform bool two_sided;      // EFFECT_TWO_SIDED
+uniform bool masked;         // the shadow mask in place of light
+
+float sun_visibility = 1.0;  // S; a shader that knows better sets it before it shades
+
+// a (sun D S + ambient), or the mask's surface
+vec3 shade_lit(vec3 albedo, float d)
+{
+    if (masked)
+        return vec3(d > 0.0 ? sun_visibility : 0.0, 1.0, 0.0);
+    return albedo * (sun_radiance * (d * sun_visibility) + ambient);
+}
 
 // Bark and terrain; normal need not be unit; facing: geometric normal . to-eye >= 0.
 vec3 shade_bark(vec3 albedo, vec3 normal, bool facing)
 {
     vec3 n = normalize(facing ? normal : -normal);
-    return albedo * (sun_radiance * max(0.0, dot(n, sun_direction)) + ambient);
+    return shade_lit(albedo, max(0.0, dot(n, sun_direction)));
 }
 
 vec3 shade_leaf(vec3 albedo, vec3 normal, bool facing)
 {
     float d = dot(normalize(normal), sun_direction);
     d = two_sided ? abs(d) : max(0.0, facing ? d : -d);
-    return albedo * (sun_radiance * d + ambient);
+    return shade_lit(albedo, d);
 }
 
 vec3 shade_fog(vec3 radiance, vec3 position_m)

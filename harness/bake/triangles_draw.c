@@ -94,7 +94,8 @@ static void draw_call(struct workspace *workspace, const struct triangles *trian
     if (!call->batch) {
         gl->Uniform1f(gl_uniform(gl, program, "elements"), (float)call->kind->levels.elements);
         gl->Uniform1f(gl_uniform(gl, program, "taper"), triangles_taper(triangles));
-        gl->Uniform1i(gl_uniform(gl, program, "level_contrast"), triangles->request.contrast);
+        gl->Uniform1i(gl_uniform(gl, program, "level_contrast"),
+                      triangles->request.contrast && !workspace->masked);
         mean_uniforms(workspace, triangles, program, (size_t)(call->kind - triangles->kinds), view);
     }
     gl->BindVertexArray(call->batch ? gpu->detail : gpu->pruned);
@@ -174,7 +175,8 @@ static void draw_sifted(struct workspace *workspace, struct triangles *triangles
         GLuint program = triangles->programs[v];
         gl->UseProgram(program);
         shade_uniforms(workspace, program, triangles->scene, view);
-        gl->Uniform1i(gl_uniform(gl, program, "level_contrast"), triangles->request.contrast);
+        gl->Uniform1i(gl_uniform(gl, program, "level_contrast"),
+                      triangles->request.contrast && !workspace->masked);
         for (size_t k = 0; k < triangles->kinds_count; k++)
             if (v == VARIANT_SIFTED + SIFT_LIT && triangles->kinds[k].probes_count > 0)
                 mean_uniforms(workspace, triangles, program, k, view);

@@ -97,33 +97,17 @@ static enum status picture_count(struct stage *stage, const struct view *view, s
     album->tally.lookups += after->lookups - before.lookups;
     album->tally.samples += after->samples - before.samples;
     album->tally.bytes += after->bytes - before.bytes;
+    album->tally.shadow_seconds += after->shadow_seconds - before.shadow_seconds;
+    album->tally.shadow_bytes += after->shadow_bytes - before.shadow_bytes;
     return status ? status : stage_check(stage, "a counted picture");
 }
 
-/* The reference from the run's folder; without a folder through the cache. NULL with a note when
- * there is none. */
 static const struct frame *reference_find(struct stage *stage, const struct view *view,
                                           unsigned effects, bool neighbour, uint64_t *key)
 {
     struct reference_options options =
         stage_reference_options(stage->plan, stage->cell, effects, neighbour);
-    struct error why = {0};
-    struct frame *frame = NULL;
-    *key = reference_key(stage->scene, view, &options);
-    if (stage->folder) {
-        const char *path = stage_reference_path(stage->scene_arena, stage->folder, *key);
-        if (!file_exists(path) || frame_load(stage->scene_arena, path, &frame, &why))
-            frame = NULL;
-    } else {
-        struct reference_stats stats;
-        if (reference_cached(stage->scene_arena, stage->scene, view, &options, &frame, &stats,
-                             &why))
-            frame = NULL;
-    }
-    if (!frame)
-        stage->result->message = arena_printf(stage->result_arena, "not compared: %s",
-                                              *why.text ? why.text : "the reference was not made");
-    return frame;
+    return stage_reference(stage, view, &options, key);
 }
 
 /* Root mean square standard error of the picture's RGB. */
@@ -230,7 +214,7 @@ static enum status view_picture(struct stage *stage, size_t index, size_t count,
         status = picture_compare(stage, &view, frame, result, &reference);
     if (!status && result->compared && stage_path_frames(stage->scene) > 1)
         status = picture_flicker(stage, index, frame, reference, album);
-    return status;
+    return status ? status : stage_mask(stage, &view, result);
 }
 
 static void album_flicker(struct result *result, const struct album *album)
@@ -262,6 +246,9 @@ static void album_tally(struct stage *stage, const struct album *album)
     result->occlusion_rays = mean_count(album->tally.occlusion_rays, album->count);
     result->lookups = mean_count(album->tally.lookups, album->count);
     result->samples = mean_count(album->tally.samples, album->count);
+    result->shadow_bytes = mean_count(album->tally.shadow_bytes, album->count);
+    if (album->tally.shadow_bytes)
+        result->shadow_seconds = album->tally.shadow_seconds / (double)album->count;
     result->moved_bytes = (double)album->tally.bytes / (double)album->count +
                           pixel_bytes[stage->gl ? target->format : TARGET_RGBA32F] *
                               target->width_px * target->height_px;

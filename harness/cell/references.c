@@ -16,6 +16,9 @@
 #include <string.h>
 #include <unistd.h>
 
+/* With a set of effects: the shadow mask, not the light. */
+#define SET_MASKED (1u << 31)
+
 /* All references of one scene in one size, tree count and seed. */
 struct shoot {
     const struct plan *plan;
@@ -69,8 +72,11 @@ static enum status shoots_list(struct arena *arena, const struct plan *plan, con
         enum status status = scene_summary(arena, cell->scene, &summary, error);
         if (status)
             return status;
-        shoot_want(shoot, stage_effects(arena, cell, summary.effects), true);
+        unsigned effects = stage_effects(arena, cell, summary.effects);
+        shoot_want(shoot, effects, true);
         shoot_want(shoot, summary.effects, false);
+        if (stage_has_mask(cell, effects))
+            shoot_want(shoot, SET_MASKED | (effects & EFFECT_TWO_SIDED), true);
     }
     return STATUS_OK;
 }
@@ -100,14 +106,16 @@ static void tracing_tell(struct arena *arena, const struct shoot *shoot, const s
 }
 
 static enum status reference_make(struct arena *arena, const struct shoot *shoot,
-                                  const struct scene *scene, double time, unsigned effects,
+                                  const struct scene *scene, double time, unsigned set,
                                   bool neighbour, int out, struct error *error)
 {
     struct view along, *view = &along;
     time = neighbour ? stage_neighbour_time(scene, time) : time;
     view_at(scene, time, view);
     struct reference_options options =
-        stage_reference_options(shoot->plan, shoot->cell, effects, neighbour);
+        set & SET_MASKED
+            ? stage_mask_options(shoot->plan, shoot->cell, set & ~SET_MASKED, neighbour)
+            : stage_reference_options(shoot->plan, shoot->cell, set, neighbour);
     uint64_t key = reference_key(scene, view, &options);
     const char *path = stage_reference_path(arena, shoot->folder, key);
     if (file_exists(path))

@@ -55,6 +55,17 @@ enum status stage_build_cold(struct stage *stage);
  * its own, since flicker takes the noise of the two as independent. */
 struct reference_options stage_reference_options(const struct plan *plan, const struct cell *cell,
                                                  unsigned effects, bool neighbour);
+/* The same for the true shadow mask; whether a cell that draws these effects has one. */
+struct reference_options stage_mask_options(const struct plan *plan, const struct cell *cell,
+                                            unsigned effects, bool neighbour);
+bool stage_has_mask(const struct cell *cell, unsigned effects);
+/* A reference from the run's folder; without a folder through the cache. NULL with a note when
+ * there is none. */
+const struct frame *stage_reference(struct stage *stage, const struct view *view,
+                                    const struct reference_options *options, uint64_t *key);
+/* The view's shadow mask and its error, and its shimmer towards the path's next frame; only where
+ * the cell has one. */
+enum status stage_mask(struct stage *stage, const struct view *view, struct result_view *result);
 /* RUN/references/KEY.frame */
 const char *stage_reference_path(struct arena *arena, const char *folder, uint64_t key);
 /* Effects that a cell draws of those its scene asks for. */

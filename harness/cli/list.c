@@ -4,7 +4,7 @@
 #include "plant/lsystem.h"
 #include "plant/plant.h"
 #include "scene/scene.h"
-#include "truth/metrics.h"
+#include "truth/mask.h"
 #include "wall/json.h"
 
 #include <glob.h>
@@ -182,6 +182,7 @@ static enum status list_metrics(const struct request *request, struct arena *are
         printf("%-15s %-8s %-7s %s\n", "metric", "domain", "better", "definition");
     metrics_put(metric_table, out);
     metrics_put(flicker_table, out);
+    metrics_put(mask_table, out);
     return STATUS_OK;
 }
 

@@ -31,7 +31,7 @@ static enum status check_option(struct subject *subject, const struct option *op
 static enum status check_description(struct subject *subject)
 {
     const struct method *method = subject->method;
-    const unsigned known = EFFECTS_ALL | TRAIT_CPU | TRAIT_STOCHASTIC | TRAIT_NO_TREES;
+    const unsigned known = EFFECTS_ALL | TRAIT_CPU | TRAIT_STOCHASTIC | TRAIT_NO_TREES | TRAIT_MASK;
     const char *stem = path_stem(subject->arena, subject->name);
     if (strcmp(method->name, stem) != 0)
         return subject_fail(subject, "its name is '%s', its file's '%s'", method->name, stem);

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "wall/gl.h"
 
-#define METHOD_ABI 3u
+#define METHOD_ABI 4u
 
 /* What a method is and which effects it models. The low bits are EFFECT_*. */
 enum {
@@ -16,6 +16,7 @@ enum {
     TRAIT_STOCHASTIC =
         1u << 17, /* its noise depends on the seed; still the same bytes for the same seed */
     TRAIT_NO_TREES = 1u << 18, /* sky and terrain alone: a floor for the others */
+    TRAIT_MASK = 1u << 19,     /* heeds workspace->masked */
 };
 
 /* What a frame did of that which the harness cannot count itself; a method adds to
@@ -34,6 +35,9 @@ struct method_tally {
     uint64_t samples;        /* texels that OpenGL filtered for a shader, bilinear or more */
     uint64_t bytes; /* that the frame must read or write, each counted once however often it
                        is used; without the picture, which the harness adds */
+    /* Of counted draws alone; a method that knows may wait for OpenGL in them. */
+    double shadow_seconds; /* making shadows (maps, volumes), apart from shading with them */
+    uint64_t shadow_bytes; /* that shadows hold: maps, volumes; of one draw, not a sum of parts */
 };
 
 /* Lives as long as the cell; nothing to free. */
@@ -48,6 +52,8 @@ struct workspace {
     uint64_t seed;
     struct method_tally tally; /* of all frames so far */
     bool counted;              /* this draw is neither timed nor seen: time for a tally by OpenGL */
+    bool masked; /* with TRAIT_MASK: this draw shows where the sun shines (scene/effects.h, the
+                    shadow mask) in place of light; not timed. bake/shade.glsl heeds it */
 };
 
 struct method {          /* its name is its file's name, '-' written '_' in C */

@@ -77,6 +77,24 @@ static void fill_scalars(struct arena *arena, struct row *row)
             row->values[COLUMN_frames] += (double)summary->results[i]->frames_count;
 }
 
+/* The mask's columns stand in the order of MASK_LIST. */
+static void fill_masks(struct row *row)
+{
+    const struct result *seen = row->seen;
+    for (size_t k = 0; mask_table[k].field; k++) {
+        double sum = 0;
+        size_t count = 0;
+        for (size_t i = 0; i < seen->views_count; i++) {
+            double value = mask_of(&seen->views[i].mask, &mask_table[k]);
+            if (seen->views[i].masked && !isnan(value)) {
+                sum += value;
+                count++;
+            }
+        }
+        row->values[COLUMN_mask_wrong + k] = count ? sum / (double)count : NAN;
+    }
+}
+
 static void fill_errors(struct row *row)
 {
     const struct result *seen = row->seen;
@@ -94,6 +112,7 @@ static void fill_errors(struct row *row)
         row->values[COLUMN_flicker_peak] = seen->flicker.peak;
         row->values[COLUMN_flicker_floor] = seen->flicker.floor;
     }
+    fill_masks(row);
     row->compared = !isnan(row->values[COLUMN_same_flip]);
 }
 

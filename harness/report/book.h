@@ -28,6 +28,15 @@
     X(flicker_mean, "", -1, "rmse of the frame-to-frame change against the reference's")           \
     X(flicker_peak, "", -1, "its largest pair of views")                                           \
     X(flicker_floor, "", -1, "what noise alone would give")                                        \
+    X(mask_wrong, "", -1, "shadow mask: wrong share of the surface, mean over views")              \
+    X(mask_leak, "", -1, "the part of it that is lit and should be dark")                          \
+    X(mask_acne, "", -1, "the part of it that is dark and should be lit")                          \
+    X(mask_stray, "", -1, "the part of it that is over 2 px from every true edge")                 \
+    X(mask_edge_px, "px", -1, "mean distance of what is wrong to the true edge")                   \
+    X(mask_floor, "", -1, "wrong share that the reference's noise alone would give")               \
+    X(mask_judged, "", 1, "share of the reference's surface that was compared")                    \
+    X(mask_dark, "", 0, "the truth's share of shadow")                                             \
+    X(mask_shimmer, "", -1, "wrong change of the mask from a view to the path's next frame")       \
     X(same_standard_error, "", -1, "of the references with the same effects, mean over views")     \
     X(full_standard_error, "", -1, "of the references with all effects, mean over views")
 

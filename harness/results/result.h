@@ -7,12 +7,14 @@
 #include "calibrate/calibrate.h"
 #include "plan/plan.h"
 #include "results/tracing.h"
+#include "truth/mask.h"
 #include "truth/metrics.h"
 
 /* Version 2 added the calibration; a run of version 1 is read as one that has none. Version 3 added
  * the method's own counts, calibrations of several rounds, and the references' cost. Version 4
- * added the angles of views, and what methods with OpenGL count. */
-#define RESULT_VERSION 4
+ * added the angles of views, and what methods with OpenGL count. Version 5 added shadow masks and
+ * the cost of shadows. */
+#define RESULT_VERSION 5
 #define RESULT_VERSION_OLDEST 1
 
 /* Scalar columns, one table for JSON keys, report columns and docs. X(field, unit, better, doc).
@@ -42,6 +44,8 @@
     X(lookups, "", 0, "voxels and texels that were looked up a frame (the method's count)")        \
     X(samples, "", 0, "texels that OpenGL filtered for shaders a frame (the method's count)")      \
     X(moved_bytes, "B", 0, "a frame's least memory traffic: its picture, what the method counted") \
+    X(shadow_seconds, "s", -1, "making shadows, a frame (the method's count); shading is apart")   \
+    X(shadow_bytes, "B", -1, "what shadows hold: maps, volumes (the method's count)")              \
     X(load_average, "", -1, "1-minute load of the machine at the start")
 
 /* One compared picture. */
@@ -57,6 +61,8 @@ struct result_view {
         same; /* against the reference of the same effects: error of the representation */
     struct comparison full; /* against the reference of all that the scene asks for: total error */
     float same_standard_error, full_standard_error; /* of the references */
+    bool masked;                                    /* has a shadow mask */
+    struct mask_error mask;
 };
 
 struct result {

@@ -67,6 +67,13 @@ static void view_put(struct json_out *out, const struct result_view *view)
         json_put_number(out, "same_standard_error", view->same_standard_error);
         json_put_number(out, "full_standard_error", view->full_standard_error);
     }
+    if (view->masked) {
+        json_open(out, "mask", '{');
+#define MASK_PUT(field, word, better, unit, doc) json_put_number(out, #field, view->mask.field);
+        MASK_LIST(MASK_PUT)
+#undef MASK_PUT
+        json_close(out);
+    }
     json_close(out);
 }
 
@@ -167,6 +174,12 @@ static void view_get(struct json *object, struct result_view *view)
     view->picture = json_text(object, "picture", NULL);
     view->same_key = json_u64(object, "same_key");
     view->full_key = json_u64(object, "full_key");
+    struct json *mask = json_object(object, "mask");
+    view->masked = mask != NULL;
+#define MASK_GET(field, word, better, unit, doc)                                                   \
+    view->mask.field = mask ? number_or_nan(mask, #field, -DBL_MAX) : NAN;
+    MASK_LIST(MASK_GET)
+#undef MASK_GET
     view->compared = json_bool(object, "compared", false);
     if (!view->compared)
         return;

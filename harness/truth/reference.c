@@ -89,6 +89,7 @@ static void picture_set(const struct scene *scene, const struct view *view,
 {
     picture->view = view;
     picture->effects = options->effects;
+    picture->masked = options->masked;
     picture->seed = options->seed;
     picture->width_px = view->width_px;
     picture->height_px = view->height_px;
@@ -322,6 +323,8 @@ uint64_t reference_key(const struct scene *scene, const struct view *view,
     hash = hash_u64(hash, options->effects);
     hash = hash_double(hash, limits.target);
     hash = hash_u64(hash, (uint64_t)limits.samples_min << 32 | limits.samples_max);
+    if (options->masked)
+        hash = hash_text(hash, "mask");
     return hash_u64(hash, options->seed);
 }
 

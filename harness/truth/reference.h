@@ -13,7 +13,8 @@ struct reference_options {
     int samples_min, samples_max; /* a pixel; 0: 16 and 4096 */
     int threads;                  /* 0: all */
     uint64_t seed;
-    bool quiet; /* no progress bar */
+    bool masked; /* the shadow mask of scene/effects.h in place of light */
+    bool quiet;  /* no progress bar */
 };
 
 struct reference_stats {

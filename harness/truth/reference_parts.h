@@ -60,6 +60,7 @@ struct picture {
     int width_px, height_px;
     float sun[3], ambient[3]; /* radiance of a white surface; 0 where the effect is off */
     bool sun_shines, sky_shines;
+    bool masked; /* the shadow mask in place of light */
     /* Not unit direction through (x, y) px, 1 along the view's forward: corner + x step_x + y
      * step_y. */
     float corner[3], step_x[3], step_y[3];

@@ -117,20 +117,28 @@ static float shine_of(const struct picture *picture, const struct tile_work *wor
     return surface->specular * powf(fminf(along / sqrtf(square), 1), surface->exponent);
 }
 
-/* albedo: times how clear the way to the eye is. */
-static void light_sun(const struct picture *picture, struct tile_work *work,
-                      const struct sights *sights, int lane, const float albedo[3], float clear)
+/* D of scene/effects.h. */
+static float sun_facing(const struct picture *picture, const struct sights *sights, int lane)
 {
     float facing = sights->sun_facing[lane];
     if (picture->effects & EFFECT_TWO_SIDED && sights->surface[lane]->leaf)
         facing = fabsf(facing);
+    return facing > 0 ? facing : 0;
+}
+
+/* albedo: times how clear the way to the eye is; of a mask, what is lit. */
+static void light_sun(const struct picture *picture, struct tile_work *work,
+                      const struct sights *sights, int lane, const float albedo[3], float clear)
+{
+    float facing = sun_facing(picture, sights, lane);
     if (!(facing > 0))
         return;
     float light[3], shine = 0;
     if (picture->effects & EFFECT_SPECULAR && sights->surface[lane]->specular > 0)
         shine = clear * shine_of(picture, work, sights, lane);
     for (int i = 0; i < 3; i++)
-        light[i] = (albedo[i] * facing + shine) * picture->sun[i];
+        light[i] =
+            picture->masked ? albedo[i] : (albedo[i] * facing + shine) * picture->sun[i];
     if (picture->effects & EFFECT_SUN_SHADOWS)
         queue_push(&work->sun, sights, lane, picture->view->sun_direction, light, work->slot[lane]);
     else
@@ -168,6 +176,17 @@ static void shade_sky(const struct picture *picture, struct tile_work *work, int
     sky_radiance(&picture->traced.scene->sky, direction, sky);
     for (int i = 0; i < 3; i++)
         work->sums[work->slot[lane]][i] += sky[i];
+}
+
+/* A surface of the shadow mask; the sky is nothing. */
+static void mask_lane(const struct picture *picture, struct tile_work *work,
+                      const struct sights *sights, int lane)
+{
+    static const float red[3] = {1, 0, 0};
+    float *sum = work->sums[work->slot[lane]];
+    sum[1] += 1;
+    sum[3] += sights->surface[lane]->plant ? 1.0f : 0.0f;
+    light_sun(picture, work, sights, lane, red, 0);
 }
 
 static void shade_lane(const struct picture *picture, struct tile_work *work,
@@ -234,7 +253,11 @@ static void packet_trace(const struct picture *picture, struct tile_work *work,
     counts->shadow -= work->sun.count;
     counts->occlusion -= work->sky.count;
     for (int lane = 0; lane < work->lanes; lane++)
-        if (sights.surface[lane])
+        if (picture->masked && sights.surface[lane])
+            mask_lane(picture, work, &sights, lane);
+        else if (picture->masked)
+            continue;
+        else if (sights.surface[lane])
             shade_lane(picture, work, &sights, lane);
         else
             shade_sky(picture, work, lane);
