@@ -4,6 +4,7 @@
 #include "bake/backdrop.h"
 #include "bake/cull.h"
 #include "bake/horizon.h"
+#include "bake/shadow_map.h"
 
 #include "backdrop.glsl.h"
 
@@ -26,6 +27,8 @@ struct backdrop {
     size_t chunks_count;
     struct chunk *chunks;
     struct horizon *horizon;
+    const struct shadow_map *shadows; /* received; NULL: none */
+    GLuint shadowed_program;
 };
 
 /* Copies the triangles of one chunk's quads behind each other. The mesh has two triangles a quad,
@@ -107,12 +110,17 @@ static bool is_smooth(const struct terrain *terrain)
     return 1 - cosf(half_angle) < 1.0f / 2048;
 }
 
+static const char *terrain_defines(struct workspace *workspace, const struct scene *scene)
+{
+    bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
+    return arena_printf(workspace->arena, "%s%s", fog ? "FOG 1\n" : "",
+                        scene->terrain.colors ? "COLORS 1\n" : "");
+}
+
 static enum status prepare_programs(struct workspace *workspace, const struct scene *scene,
                                     struct backdrop *backdrop)
 {
-    bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
-    const char *plain = arena_printf(workspace->arena, "%s%s", fog ? "FOG 1\n" : "",
-                                     scene->terrain.colors ? "COLORS 1\n" : "");
+    const char *plain = terrain_defines(workspace, scene);
     const char *smooth = arena_printf(workspace->arena, "%sSMOOTH 1\n", plain);
     enum status status = gl_program(workspace->gl, "terrain", backdrop_glsl, plain,
                                     &backdrop->terrain_program, workspace->error);
@@ -169,6 +177,30 @@ enum status backdrop_prepare(struct workspace *workspace, const struct scene *sc
     return status == STATUS_OK ? gl_check(gl, "backdrop", workspace->error) : status;
 }
 
+enum status backdrop_receive(struct workspace *workspace, struct backdrop *backdrop,
+                             const struct shadow_map *map)
+{
+    backdrop->shadows = map;
+    if (backdrop->chunks_count == 0)
+        return STATUS_OK;
+    return shadow_map_program(workspace, map, "shadowed terrain", backdrop_glsl,
+                              terrain_defines(workspace, backdrop->scene),
+                              &backdrop->shadowed_program);
+}
+
+void backdrop_cast(struct workspace *workspace, const struct backdrop *backdrop,
+                   const struct shadow_pass *pass)
+{
+    if (backdrop->chunks_count == 0 || horizon_is_flat(&backdrop->scene->terrain))
+        return;
+    const struct chunk *last = &backdrop->chunks[backdrop->chunks_count - 1];
+    shadow_pass_use(workspace, pass, pass->programs[SHADOW_CAST_TERRAIN]);
+    workspace->gl->BindVertexArray(backdrop->terrain_vertices);
+    gl_draw_elements(workspace->gl, GL_TRIANGLES,
+                     (GLsizei)(last->first_index + last->indices_count), GL_UNSIGNED_INT, 0, 1, 0,
+                     0);
+}
+
 /* Above a height field and within its borders the first thing that a ray meets is a front face. */
 static bool eye_is_above(const struct terrain *terrain, const float eye_m[3])
 {
@@ -198,11 +230,15 @@ static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
     if (backdrop->chunks_count == 0)
         return;
     bool above = eye_is_above(&scene->terrain, view->eye_m);
-    bool smooth = above && backdrop->smooth_program && !workspace->masked;
-    GLuint program = smooth ? backdrop->smooth_program : backdrop->terrain_program;
+    bool smooth = above && backdrop->smooth_program && !workspace->masked && !backdrop->shadows;
+    GLuint program = smooth              ? backdrop->smooth_program
+                     : backdrop->shadows ? backdrop->shadowed_program
+                                         : backdrop->terrain_program;
     gl->UseProgram(program);
     gl->BindVertexArray(backdrop->terrain_vertices);
     shade_uniforms(workspace, program, scene, view);
+    if (backdrop->shadows)
+        shadow_map_uniforms(workspace, backdrop->shadows, program);
     if (smooth)
         smooth_uniforms(workspace, program, scene);
     else

@@ -1,5 +1,6 @@
 // Sky and terrain. SKY: one triangle over the picture; else the terrain's mesh. SMOOTH: seen from above, and bent so
 // little that N.L may be interpolated instead of N. FOG: with fog. COLORS: of each vertex.
+// SHADOWED: behind shadow_map.glsl.
 #pragma stage vertex
 #ifdef SKY
 uniform vec3 corner_rays[3];  // directions through (-1,-1), (3,-1), (-1,3) in clip space, not unit
@@ -18,7 +19,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 color_in;
 out vec3 tint;
 #endif
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
 out vec3 position_m;
 #endif
 #ifdef SMOOTH
@@ -32,7 +33,7 @@ void main()
 #ifdef COLORS
     tint = color_in;
 #endif
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
     position_m = position;
 #endif
 #ifdef SMOOTH
@@ -62,7 +63,7 @@ uniform vec3 albedo;
 #ifdef COLORS
 in vec3 tint;
 #endif
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
 in vec3 position_m;
 #endif
 #ifdef SMOOTH
@@ -74,13 +75,16 @@ in vec3 shading_normal;
 
 void main()
 {
+#ifdef SHADOWED
+    sun_visibility = shadow_visibility(position_m, shading_normal);
+#endif
 #ifdef SMOOTH
     vec3 radiance = in_shade + in_sun * max(0.0, cosine);
 #else
     vec3 radiance = shade_bark(albedo, shading_normal, gl_FrontFacing);
 #endif
 #ifdef COLORS
-    radiance *= tint;
+    radiance *= masked ? vec3(1.0) : tint;
 #endif
 #ifdef FOG
     radiance = shade_fog(radiance, position_m);

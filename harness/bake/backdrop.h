@@ -8,6 +8,14 @@ struct backdrop;
 
 enum status backdrop_prepare(struct workspace *workspace, const struct scene *scene,
                              struct backdrop **backdrop);
+struct shadow_map;
+struct shadow_pass;
+/* The ground receives the map's shadows from now on. */
+enum status backdrop_receive(struct workspace *workspace, struct backdrop *backdrop,
+                             const struct shadow_map *map);
+/* The ground, where it is bent, as a caster of a shadow map's pass. */
+void backdrop_cast(struct workspace *workspace, const struct backdrop *backdrop,
+                   const struct shadow_pass *pass);
 /* Clears the bound framebuffer's colour and depth and draws sky and terrain with alpha 0. Leaves
  * depth test and depth write on, GL_LESS, blending off, no culling, viewport of the view. */
 void backdrop_draw(struct workspace *workspace, struct backdrop *backdrop, const struct view *view);

@@ -21,13 +21,13 @@ float triangles_taper(const struct triangles *triangles)
     return triangles->request.smooth ? 0.5f : 0;
 }
 
-int triangles_variant(const struct plant_gl_batch *batch)
+int triangles_variant(const struct triangles *triangles, const struct plant_gl_batch *batch)
 {
     bool leaf = batch->kind == MATERIAL_LEAF;
     if (batch->texture)
         return leaf ? VARIANT_LEAF_TEXTURED : VARIANT_BARK_TEXTURED;
     if (leaf)
-        return batch->flat ? VARIANT_LEAF_LIT : VARIANT_LEAF;
+        return batch->flat && !triangles->request.shadows ? VARIANT_LEAF_LIT : VARIANT_LEAF;
     return VARIANT_BARK;
 }
 
@@ -72,7 +72,7 @@ static enum status prepare_programs(struct workspace *workspace, struct triangle
     bool fog = workspace->effects & EFFECT_FOG && triangles->scene->fog.density_per_m > 0;
     for (size_t k = 0; k < triangles->kinds_count; k++) {
         for (size_t b = 0; b < triangles->kinds[k].gpu.batches_count; b++)
-            wanted[triangles_variant(&triangles->kinds[k].gpu.batches[b])] = true;
+            wanted[triangles_variant(triangles, &triangles->kinds[k].gpu.batches[b])] = true;
         wanted[VARIANT_PRUNED] |= triangles->kinds[k].gpu.pruned > 0;
     }
     for (int v = VARIANT_SIFTED; v < VARIANTS; v++)
@@ -83,8 +83,12 @@ static enum status prepare_programs(struct workspace *workspace, struct triangle
         const char *defines =
             arena_printf(workspace->arena, "MEANS %d\n%s%s", triangles->means_count,
                          fog ? "FOG 1\n" : "", variant_defines[v]);
-        enum status status = gl_program(workspace->gl, "triangles", triangles_glsl, defines,
-                                        &triangles->programs[v], workspace->error);
+        const struct shadow_map *shadows = triangles->request.shadows;
+        GLuint *program = &triangles->programs[v];
+        enum status status = shadows ? shadow_map_program(workspace, shadows, "triangles",
+                                                          triangles_glsl, defines, program)
+                                     : gl_program(workspace->gl, "triangles", triangles_glsl,
+                                                  defines, program, workspace->error);
         if (status != STATUS_OK)
             return status;
     }
@@ -172,8 +176,8 @@ float triangles_mean_stretch(const struct kind *kind, int step)
 /* Sifts where that pays and is possible. */
 static enum status prepare_sift(struct workspace *workspace, struct triangles *triangles)
 {
-    bool use =
-        triangles->request.sift && workspace->gl->software && triangles->kinds_count <= SPECIES_MAX;
+    bool use = triangles->request.sift && !triangles->request.shadows && workspace->gl->software &&
+               triangles->kinds_count <= SPECIES_MAX;
     for (size_t k = 0; k < triangles->kinds_count && use; k++) {
         const struct mesh *mesh;
         enum status status = STATUS_OK;

@@ -2,7 +2,7 @@
 // PRUNED: the elements of a far tree; they grow as they get fewer, and shrink away at the end of the run.
 // SIFTED: triangles of any tree, in the world already.
 // TEXTURED: alpha-tested. LEAF: leaf shading, else bark. LIT_AT_VERTICES: flat triangles of one colour, shaded before
-// they are rasterised. FOG: with fog.
+// they are rasterised. FOG: with fog. SHADOWED: behind shadow_map.glsl.
 #ifdef FOG
 #define RADIANCE centroid
 #else
@@ -27,7 +27,7 @@ RADIANCE out vec3 radiance;
 #else
 centroid out vec3 shading_normal;
 centroid out vec3 surface_albedo;
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
 centroid out vec3 position_m;
 #endif
 #endif
@@ -68,6 +68,9 @@ void main()
 #endif
 #ifdef LIT_AT_VERTICES
     bool facing = dot(n, eye_m - world) >= 0.0;  // the same at every point of a flat triangle
+#ifdef SHADOWED
+    sun_visibility = shadow_visibility(world, n);
+#endif
     vec3 lit = leaf ? shade_leaf(albedo.rgb, n, facing) : shade_bark(albedo.rgb, n, facing);
     // One element stands for grow^2: the mean of so many varies grow times less (Cook et al. 2007, 3.3).
 #if defined(PRUNED)
@@ -84,7 +87,7 @@ void main()
 #else
     shading_normal = n;
     surface_albedo = albedo.rgb;
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
     position_m = world;
 #endif
 #endif
@@ -106,7 +109,7 @@ void main()
 #else
 centroid in vec3 shading_normal;
 centroid in vec3 surface_albedo;
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
 centroid in vec3 position_m;
 #endif
 #ifdef TEXTURED
@@ -122,6 +125,9 @@ void main()
     if (texel.a < 0.5)
         discard;
     a *= texel.rgb;
+#endif
+#ifdef SHADOWED
+    sun_visibility = shadow_visibility(position_m, shading_normal);
 #endif
 #ifdef LEAF
     vec3 lit = shade_leaf(a, shading_normal, gl_FrontFacing);

@@ -13,6 +13,7 @@
 
 #include "bake/cull.h"
 #include "bake/sampling.h"
+#include "bake/shadow_map.h"
 #include "method/method.h"
 
 struct triangles_request {
@@ -21,6 +22,7 @@ struct triangles_request {
     bool smooth;        /* pruned leaves shrink away one by one instead of in steps */
     bool contrast;      /* pruned leaves are drawn nearer to their mean radiance */
     bool sift;          /* where GL is software and no plant has a texture */
+    const struct shadow_map *shadows; /* received; NULL: none. Then nothing is sifted */
 };
 
 struct triangles;
@@ -42,6 +44,10 @@ struct triangles_frame {
     const struct sampling_places *places; /* of each texel of what is bound */
     struct cull *cull;                    /* that the list is of */
 };
+/* Draws all trees that may shade a shadow map's pass, with its programs, into what is bound. */
+void triangles_cast(struct workspace *workspace, struct triangles *triangles,
+                    const struct shadow_pass *pass);
+
 /* Draws the trees of a list into what is bound, depth tested. Reorders the list. Leaves a program
  * and a vertex array bound. */
 void triangles_draw(struct workspace *workspace, struct triangles *triangles,

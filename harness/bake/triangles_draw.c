@@ -88,9 +88,12 @@ static void draw_call(struct workspace *workspace, const struct triangles *trian
     struct gl *gl = workspace->gl;
     const struct plant_gl *gpu = &call->kind->gpu;
     GLuint program =
-        triangles->programs[call->batch ? triangles_variant(call->batch) : VARIANT_PRUNED];
+        triangles
+            ->programs[call->batch ? triangles_variant(triangles, call->batch) : VARIANT_PRUNED];
     gl->UseProgram(program);
     shade_uniforms(workspace, program, triangles->scene, view);
+    if (triangles->request.shadows)
+        shadow_map_uniforms(workspace, triangles->request.shadows, program);
     if (!call->batch) {
         gl->Uniform1f(gl_uniform(gl, program, "elements"), (float)call->kind->levels.elements);
         gl->Uniform1f(gl_uniform(gl, program, "taper"), triangles_taper(triangles));

@@ -66,7 +66,7 @@ struct triangles {
 /* The share of an element's run over which it shrinks away. */
 float triangles_taper(const struct triangles *triangles);
 /* VARIANT_... of the program that draws a batch. */
-int triangles_variant(const struct plant_gl_batch *batch);
+int triangles_variant(const struct triangles *triangles, const struct plant_gl_batch *batch);
 
 /* Where the shaders have the mean of the bark of a tree, of the nearest step of its stretch; its
  * leaves' follows. */

@@ -36,7 +36,7 @@ struct method_tally {
     uint64_t bytes; /* that the frame must read or write, each counted once however often it
                        is used; without the picture, which the harness adds */
     /* Of counted draws alone; a method that knows may wait for OpenGL in them. */
-    double shadow_seconds; /* making shadows (maps, volumes), apart from shading with them */
+    double shadow_seconds; /* making all shadows (maps, volumes) once; not shading */
     uint64_t shadow_bytes; /* that shadows hold: maps, volumes; of one draw, not a sum of parts */
 };
 

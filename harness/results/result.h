@@ -44,7 +44,7 @@
     X(lookups, "", 0, "voxels and texels that were looked up a frame (the method's count)")        \
     X(samples, "", 0, "texels that OpenGL filtered for shaders a frame (the method's count)")      \
     X(moved_bytes, "B", 0, "a frame's least memory traffic: its picture, what the method counted") \
-    X(shadow_seconds, "s", -1, "making shadows, a frame (the method's count); shading is apart")   \
+    X(shadow_seconds, "s", -1, "making all shadows once (the method's count); shading is apart")   \
     X(shadow_bytes, "B", -1, "what shadows hold: maps, volumes (the method's count)")              \
     X(load_average, "", -1, "1-minute load of the machine at the start")
 

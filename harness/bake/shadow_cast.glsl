@@ -1,0 +1,67 @@
+// What casts into a shadow map. TERRAIN: the ground; else triangles of plants, instanced. PRUNED, TEXTURED: as of
+// triangles.glsl. LAYERS: beside the depth, to which depths behind the map's first one a sample is covered.
+#pragma stage vertex
+layout(location = 0) in vec3 position;
+uniform mat4 light;
+#ifndef TERRAIN
+layout(location = 5) in vec4 place;
+layout(location = 6) in vec4 turn;
+layout(location = 8) in vec2 shape;
+#endif
+#ifdef TEXTURED
+layout(location = 3) in vec2 uv;
+out vec2 texture_uv;
+#endif
+#ifdef PRUNED
+layout(location = 1) in vec4 normal;
+layout(location = 2) in vec4 albedo;
+layout(location = 4) in vec3 center;
+layout(location = 7) in vec2 run;
+uniform float elements;
+#endif
+
+void main()
+{
+    vec3 world = position;
+#ifndef TERRAIN
+    vec3 local = position;
+#ifdef PRUNED
+    float rank = float(gl_VertexID / 3) - run.x;
+    rank += rank < 0.0 ? elements : 0.0;
+    bool kept = normal.w > 0.5 || albedo.w < run.y;
+    local = center + (position - center) * (kept ? turn.w : 0.0);
+#endif
+    world = place.xyz + place.w * rotate_y(vec3(local.x, local.y * shape.x, local.z), turn.x, turn.y);
+#endif
+#ifdef TEXTURED
+    texture_uv = uv;
+#endif
+    gl_Position = light * vec4(world, 1.0);
+}
+
+#pragma stage fragment
+#ifdef TEXTURED
+in vec2 texture_uv;
+layout(binding = 0) uniform sampler2D picture;
+#endif
+#ifdef LAYERS
+layout(location = 0) out vec4 covered;
+layout(binding = 5) uniform sampler2DArray first;
+uniform int layer;
+uniform float layer_depth;  // of a layer, in units of depth
+#endif
+
+void main()
+{
+#ifdef TEXTURED
+    if (texture(picture, texture_uv).a < 0.5)
+        discard;
+#endif
+#ifdef LAYERS
+    float behind = gl_FragCoord.z - texelFetch(first, ivec3(gl_FragCoord.xy, layer), 0).r;
+    covered = vec4(lessThanEqual(vec4(behind), layer_depth * vec4(1.0, 2.0, 3.0, 4.0)));
+#if LAYERS == 1
+    covered = vec4(1.0);
+#endif
+#endif
+}
