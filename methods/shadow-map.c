@@ -29,7 +29,7 @@ static const struct option option_table[] = {
     OPTION_WORD(struct options, foliage, 0, "solid|alpha|deep",
         "what a texel holds: a depth; and how much of it is covered; and how much up to four depths behind the first"),
     OPTION(struct options, layer_m, 1, 0.001, 1000, "m", "foliage=deep: between two of the depths"),
-    OPTION(struct options, caster_tx, 0, 0, 64, "",
+    OPTION(struct options, caster_tx, 1, 0, 64, "",
         "how large a pruned leaf of a caster may grow, in texels; 0: every triangle casts"),
     OPTION(struct options, reach_m, 0, 0, 1000000, "m", "shadows are seen to this depth; 0: to the end of the view"),
     OPTION_WORD(struct options, samples, 1, "1|4|16", "samples a pixel"),

@@ -20,6 +20,9 @@ struct shadow_map {
     GLuint programs[2][SHADOW_CASTS];                             /* depths, coverage */
     struct shadow_fit fits[SHADOW_CASCADES_MAX];
     double ends_m[SHADOW_CASCADES_MAX + 1];
+    float sun[3]; /* that axes and casters are of */
+    double axes[3][3];
+    struct shadow_box casters;
     float forward[3];
 };
 
@@ -116,24 +119,26 @@ enum status shadow_map_program(struct workspace *workspace, const struct shadow_
 static bool fits_find(struct shadow_map *map, const struct view *view)
 {
     const struct shadow_options *options = &map->options;
-    double axes[3][3];
     struct shadow_fit before[SHADOW_CASCADES_MAX];
     memcpy(before, map->fits, sizeof before);
     double far_m = (double)view->far_m, near_m = (double)view->near_m;
     if (options->reach_m > 0 && (double)options->reach_m > 1.01 * near_m)
         far_m = fmin(far_m, (double)options->reach_m);
-    shadow_axes(view->sun_direction, axes);
+    if (memcmp(map->sun, view->sun_direction, sizeof map->sun) != 0) {
+        memcpy(map->sun, view->sun_direction, sizeof map->sun);
+        shadow_axes(map->sun, map->axes);
+        map->casters = shadow_casters_box(map->scene, (const double(*)[3])map->axes);
+    }
     shadow_splits(near_m, far_m, (double)options->split, options->cascades, map->ends_m);
     struct shadow_request request = {.view = view,
                                      .size_px = options->size_px,
                                      .stable = options->stable,
                                      .perspective = options->perspective,
-                                     .casters =
-                                         shadow_casters_box(map->scene, (const double(*)[3])axes)};
+                                     .casters = map->casters};
     for (int c = 0; c < options->cascades; c++) {
         request.near_m = map->ends_m[c];
         request.far_m = map->ends_m[c + 1];
-        shadow_fit(&request, (const double(*)[3])axes, &map->fits[c]);
+        shadow_fit(&request, (const double(*)[3])map->axes, &map->fits[c]);
     }
     memcpy(map->forward, view->forward, sizeof map->forward);
     return memcmp(before, map->fits, sizeof before) != 0;

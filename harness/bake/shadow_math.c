@@ -89,7 +89,8 @@ struct shadow_box shadow_casters_box(const struct scene *scene, const double axe
         box_add(&box, axes, (double[3]){(double)foot[0], (double)foot[1], (double)foot[2]},
                 (double)scene->tree_reach_m);
     }
-    for (int corner = 0; corner < 8 && ground_is_bent(&scene->terrain); corner++) {
+    bool bent = ground_is_bent(&scene->terrain);
+    for (int corner = 0; corner < 8 && bent; corner++) {
         double point[3];
         for (int i = 0; i < 3; i++)
             point[i] = (double)(corner >> i & 1 ? scene->maximum_m[i] : scene->minimum_m[i]);
