@@ -137,8 +137,7 @@ static void light_sun(const struct picture *picture, struct tile_work *work,
     if (picture->effects & EFFECT_SPECULAR && sights->surface[lane]->specular > 0)
         shine = clear * shine_of(picture, work, sights, lane);
     for (int i = 0; i < 3; i++)
-        light[i] =
-            picture->masked ? albedo[i] : (albedo[i] * facing + shine) * picture->sun[i];
+        light[i] = picture->masked ? albedo[i] : (albedo[i] * facing + shine) * picture->sun[i];
     if (picture->effects & EFFECT_SUN_SHADOWS)
         queue_push(&work->sun, sights, lane, picture->view->sun_direction, light, work->slot[lane]);
     else
