@@ -74,8 +74,10 @@ static inline struct picture picture_draw_cpu(struct arena *arena, const struct 
     void *state = NULL, *options = arena_alloc(arena, 1, method->options_size);
     struct picture picture = {view->width_px, view->height_px, NULL, 0, 0, 0};
     picture.rgba = ARENA_ARRAY(arena, float, 4 * (size_t)(view->width_px * view->height_px));
-    struct target target = {view->width_px, view->height_px, setting->format, 0, 0, 0,
-                            picture.rgba};
+    struct target target = {.width_px = view->width_px,
+                            .height_px = view->height_px,
+                            .format = setting->format,
+                            .pixels = picture.rgba};
     struct workspace workspace = {.arena = arena,
                                   .error = &error,
                                   .effects = setting->effects & method->traits,

@@ -6,6 +6,7 @@
 struct sampling {
     int samples_texel; /* samples in each texel of the twin */
     int side;          /* texels of the twin along a pixel's side */
+    bool stencil;
     GLuint program, no_vertices;
     struct target twin;
     struct sampling_places places;
@@ -32,6 +33,16 @@ enum status sampling_prepare(struct workspace *workspace, int samples, struct sa
     return gl_program(gl, "sampling", sampling_glsl, NULL, &made->program, workspace->error);
 }
 
+void sampling_stencil(struct sampling *sampling)
+{
+    sampling->stencil = true;
+}
+
+static bool has_twin(const struct sampling *sampling)
+{
+    return sampling->samples_texel > 1 || sampling->stencil;
+}
+
 enum status sampling_begin(struct workspace *workspace, struct sampling *sampling,
                            const struct target *target, const struct view *view, struct view *drawn)
 {
@@ -39,7 +50,7 @@ enum status sampling_begin(struct workspace *workspace, struct sampling *samplin
     struct target *twin = &sampling->twin, enlarged = *target;
     enum status status = STATUS_OK;
     *drawn = *view;
-    if (sampling->samples_texel == 1) {
+    if (!has_twin(sampling)) {
         gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
         return STATUS_OK;
     }
@@ -49,8 +60,10 @@ enum status sampling_begin(struct workspace *workspace, struct sampling *samplin
         twin->format != target->format) {
         gl_delete_texture(gl, twin->color);
         gl_delete_texture(gl, twin->depth);
-        status =
-            gl_target_multisample(gl, &enlarged, sampling->samples_texel, twin, workspace->error);
+        status = sampling->stencil ? gl_target_stencil(gl, &enlarged, sampling->samples_texel, twin,
+                                                       workspace->error)
+                                   : gl_target_multisample(gl, &enlarged, sampling->samples_texel,
+                                                           twin, workspace->error);
     }
     gl->BindFramebuffer(GL_FRAMEBUFFER, twin->framebuffer);
     if (status == STATUS_OK)
@@ -67,7 +80,7 @@ void sampling_end(struct workspace *workspace, const struct sampling *sampling,
                   const struct target *target)
 {
     struct gl *gl = workspace->gl;
-    if (sampling->samples_texel == 1)
+    if (!has_twin(sampling))
         return;
     if (sampling->side == 1) {
         gl_target_resolve(gl, &sampling->twin, target);

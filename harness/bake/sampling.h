@@ -23,6 +23,9 @@ struct sampling;
  * wild. */
 enum status sampling_prepare(struct workspace *workspace, int samples, struct sampling **sampling);
 
+/* The twin has a stencil buffer; then one sample has a twin too. Before the first frame. */
+void sampling_stencil(struct sampling *sampling);
+
 /* Binds what is to be drawn into; drawn is view with its size. */
 enum status sampling_begin(struct workspace *workspace, struct sampling *sampling,
                            const struct target *target, const struct view *view,

@@ -95,12 +95,16 @@ struct target {
         framebuffer; /* color texture of the format and a 32-bit float depth; 0 for a CPU method */
     GLuint color, depth; /* textures */
     float *pixels;       /* CPU methods: height x width x 4, row 0 on top; else NULL */
+    bool stencil;        /* depth has 8 bits of stencil too: of a twin alone */
 };
 enum status gl_target(struct gl *gl, int width_px, int height_px, enum target_format format,
                       struct target *target, struct error *error);
 /* A multisampled twin of a target (samples > 1) to draw into; resolve averages it into target. */
 enum status gl_target_multisample(struct gl *gl, const struct target *target, int samples,
                                   struct target *multisampled, struct error *error);
+/* The same with a stencil buffer of 8 bits, also of 1 sample. */
+enum status gl_target_stencil(struct gl *gl, const struct target *target, int samples,
+                              struct target *twin, struct error *error);
 void gl_target_resolve(struct gl *gl, const struct target *multisampled,
                        const struct target *target);
 /* Reads a target as float RGBA, row 0 on top. Not timed with the drawing. */

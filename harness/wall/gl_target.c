@@ -39,7 +39,9 @@ static enum status frame_textures(struct gl *gl, struct target *target, int samp
 {
     target->framebuffer = gl_framebuffer(gl);
     gl->NamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->color, 0);
-    gl->NamedFramebufferTexture(target->framebuffer, GL_DEPTH_ATTACHMENT, target->depth, 0);
+    gl->NamedFramebufferTexture(target->framebuffer,
+                                target->stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT,
+                                target->depth, 0);
     GLenum state = gl->CheckNamedFramebufferStatus(target->framebuffer, GL_FRAMEBUFFER);
     if (state != GL_FRAMEBUFFER_COMPLETE)
         return error_set(error, STATUS_GL,
@@ -93,6 +95,33 @@ enum status gl_target_multisample(struct gl *gl, const struct target *target, in
     multisampled->depth = gl_texture_multisample(gl, samples, GL_DEPTH_COMPONENT32F,
                                                  target->width_px, target->height_px);
     return frame_textures(gl, multisampled, samples, error);
+}
+
+enum status gl_target_stencil(struct gl *gl, const struct target *target, int samples,
+                              struct target *twin, struct error *error)
+{
+    *twin = (struct target){.width_px = target->width_px,
+                            .height_px = target->height_px,
+                            .format = target->format,
+                            .stencil = true};
+    int width_px = twin->width_px, height_px = twin->height_px;
+    GLenum format = target_format_gl(twin->format);
+    enum status status = check_size(gl, width_px, height_px, error);
+    if (status == STATUS_OK && (samples < 1 || samples > gl->samples_max))
+        return error_set(error, STATUS_INVALID, "samples: %d is outside 1..%d of %s", samples,
+                         gl->samples_max, gl->renderer);
+    if (status != STATUS_OK)
+        return status;
+    if (samples == 1) {
+        twin->color = gl_texture(gl, GL_TEXTURE_2D, 1, format, width_px, height_px, 1);
+        twin->depth =
+            gl_texture(gl, GL_TEXTURE_2D, 1, GL_DEPTH32F_STENCIL8, width_px, height_px, 1);
+    } else {
+        twin->color = gl_texture_multisample(gl, samples, format, width_px, height_px);
+        twin->depth =
+            gl_texture_multisample(gl, samples, GL_DEPTH32F_STENCIL8, width_px, height_px);
+    }
+    return frame_textures(gl, twin, samples, error);
 }
 
 void gl_target_resolve(struct gl *gl, const struct target *multisampled,

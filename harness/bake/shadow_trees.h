@@ -1,0 +1,23 @@
+/* Trees as all their triangles in the world, for methods that need the very triangles that cast
+ * shadows: nothing is pruned, the light is that of method polygons (bake/shade.glsl). */
+#ifndef TREELINE_BAKE_SHADOW_TREES_H
+#define TREELINE_BAKE_SHADOW_TREES_H
+
+#include "method/method.h"
+
+/* Triangles of all trees together that fit. */
+#define SHADOW_TREES_ROOM (1u << 23)
+
+struct shadow_trees;
+
+/* A method's `supported`: whether they fit. */
+enum status shadow_trees_supported(const struct scene *scene, const char **reason);
+
+enum status shadow_trees_prepare(struct workspace *workspace, const struct scene *scene,
+                                 struct shadow_trees **trees);
+/* A vertex of the instance's plant in the world: the same floats that are drawn. */
+void shadow_trees_place(const struct instance *instance, const float point[3], float world_m[3]);
+void shadow_trees_draw(struct workspace *workspace, const struct shadow_trees *trees,
+                       const struct view *view);
+
+#endif

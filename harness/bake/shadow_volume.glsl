@@ -1,0 +1,68 @@
+// Shadow volumes, and the trees that cast them. TREES: triangles in the world with their light, TEXTURED:
+// alpha-tested; else boundaries of volumes, which write nothing but the stencil.
+#pragma stage vertex
+#ifdef TREES
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 normal;  // w: 1 leaf, 0 bark
+layout(location = 2) in vec4 albedo;
+centroid out vec3 position_m;
+centroid out vec3 shading_normal;
+centroid out vec3 surface_albedo;
+flat out int leaf;
+#ifdef TEXTURED
+layout(location = 3) in vec2 uv;
+sample out vec2 texture_uv;
+#endif
+
+void main()
+{
+    position_m = position;
+    shading_normal = normal.xyz;
+    surface_albedo = albedo.rgb;
+    leaf = normal.w > 0.5 ? 1 : 0;
+#ifdef TEXTURED
+    texture_uv = uv;
+#endif
+    gl_Position = view_projection * vec4(position, 1.0);
+}
+#else
+layout(location = 0) in vec4 position;  // w: 1, or 0 at infinity
+
+void main()
+{
+    // the very expression that surfaces are drawn with, so that a cap has its surface's depth
+    vec4 near = view_projection * vec4(position.xyz, 1.0);
+    gl_Position = position.w > 0.0 ? near : view_projection * vec4(position.xyz, 0.0);
+}
+#endif
+
+#pragma stage fragment
+#ifdef TREES
+layout(location = 0) out vec4 color;
+centroid in vec3 position_m;
+centroid in vec3 shading_normal;
+centroid in vec3 surface_albedo;
+flat in int leaf;
+#ifdef TEXTURED
+sample in vec2 texture_uv;
+layout(binding = 0) uniform sampler2D picture;
+#endif
+
+void main()
+{
+    vec3 a = surface_albedo;
+#ifdef TEXTURED
+    vec4 texel = texture(picture, texture_uv);
+    if (texel.a < 0.5)
+        discard;
+    a *= texel.rgb;
+#endif
+    vec3 lit = leaf != 0 ? shade_leaf(a, shading_normal, gl_FrontFacing)
+                         : shade_bark(a, shading_normal, gl_FrontFacing);
+    color = vec4(shade_fog(lit, position_m), 1.0);
+}
+#else
+void main()
+{
+}
+#endif

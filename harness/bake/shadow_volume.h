@@ -1,0 +1,41 @@
+/* Shadow volumes in the stencil buffer (Crow 1977, Heidmann 1991; Everitt and Kilgard 2002 for caps
+ * at infinity, z-fail and wrapping): how many volumes each visible sample is within.
+ *
+ * What holds: the count is the true one modulo 256, in whatever order volumes come, since it wraps
+ * both ways; a sample within a multiple of 256 volumes, but not 0, is taken for lit. Alpha-tested
+ * triangles cast as if they were opaque. The edge of a shadow lies where the rasteriser puts the
+ * wall: exact to the depth buffer's resolution, z^2 / (near 2^24) at depth z. */
+#ifndef TREELINE_BAKE_SHADOW_VOLUME_H
+#define TREELINE_BAKE_SHADOW_VOLUME_H
+
+#include "method/method.h"
+
+/* z-pass counts what is before a sample: right where the eye is in no volume. z-fail counts what is
+ * behind: right everywhere, and caps are drawn too. AUTO: z-pass for trees in whose volume the eye
+ * cannot be, z-fail for the others and for the terrain. */
+enum shadow_test { SHADOW_AUTO, SHADOW_Z_FAIL, SHADOW_Z_PASS };
+
+struct shadow_volume_request {
+    enum shadow_test test;
+    bool triangles; /* each triangle has its own volume, without silhouettes */
+};
+
+struct shadow_volume;
+
+/* Neighbours of all casters, trees and terrain; no volume yet. */
+enum status shadow_volume_prepare(struct workspace *workspace, const struct scene *scene,
+                                  const struct shadow_volume_request *request,
+                                  struct shadow_volume **volume);
+/* The boundaries for a sun: nothing to do when it stands where it stood. */
+void shadow_volume_extrude(struct workspace *workspace, struct shadow_volume *volume,
+                           const float sun_direction[3]);
+/* The far plane is moved to infinity: what must be drawn with volumes, surfaces too. */
+void shadow_volume_view(struct view *view);
+/* Clears the stencil of the bound framebuffer and counts into it. Surfaces must be drawn, with the
+ * same view and as the very triangles that cast; depth is not changed. Leaves the stencil test on,
+ * passing where the count is 0, until shadow_volume_end. */
+void shadow_volume_count(struct workspace *workspace, const struct shadow_volume *volume,
+                         const struct view *view);
+void shadow_volume_end(struct workspace *workspace);
+
+#endif

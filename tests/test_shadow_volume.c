@@ -1,0 +1,505 @@
+/* Shadow volumes: boundaries that close, and the shadow mask of method shadow-volume against rays
+ * traced through pixel centres. */
+#include "pictures.h"
+
+#include "bake/shadow_caster.h"
+#include "base/random.h"
+#include "wall/embree.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { WIDTH = 64, HEIGHT = 48, MESHES = 2 };
+
+/* A scene with its rays: the plant's mesh and the ground. */
+struct rig {
+    struct arena *arena;
+    struct scene *scene;
+    struct view view;
+    struct embree *embree;
+    const struct mesh *plant;
+    struct error error;
+};
+
+static struct mesh *mesh_make(struct arena *arena, enum material_kind kind, size_t room)
+{
+    struct mesh *mesh = ARENA_NEW(arena, struct mesh);
+    mesh->positions = arena_alloc(arena, 3 * room, sizeof *mesh->positions);
+    mesh->normals = arena_alloc(arena, 3 * room, sizeof *mesh->normals);
+    mesh->triangles = arena_alloc(arena, room, sizeof *mesh->triangles);
+    mesh->parts_count = mesh->materials_count = 1;
+    mesh->parts = ARENA_NEW(arena, struct mesh_part);
+    mesh->materials = ARENA_NEW(arena, struct material);
+    *mesh->materials =
+        (struct material){.name = "test", .kind = kind, .albedo = {0.5f, 0.5f, 0.5f}};
+    return mesh;
+}
+
+static void add_triangle(struct mesh *mesh, const float a[3], const float b[3], const float c[3])
+{
+    const float *corners[3] = {a, b, c};
+    float u[3], v[3], n[3], square = 0;
+    for (int i = 0; i < 3; i++) {
+        u[i] = b[i] - a[i];
+        v[i] = c[i] - a[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+        square += n[i] * n[i];
+    }
+    for (uint32_t k = 0; k < 3; k++) {
+        size_t at = mesh->vertices_count++;
+        memcpy(mesh->positions[at], corners[k], 3 * sizeof(float));
+        for (int i = 0; i < 3; i++)
+            mesh->normals[at][i] = n[i] / sqrtf(square);
+        mesh->triangles[mesh->triangles_count][k] = (uint32_t)at;
+    }
+    mesh->triangles_count++;
+}
+
+static struct mesh *mesh_done(struct arena *arena, struct mesh *mesh)
+{
+    struct mesh_part *part = mesh->parts;
+    struct error error;
+    part->triangles_count = (uint32_t)mesh->triangles_count;
+    if (mesh->materials->kind == MATERIAL_LEAF) {
+        part->elements_count = part->triangles_count;
+        part->element_first = ARENA_ARRAY(arena, uint32_t, part->elements_count + 1);
+        for (uint32_t i = 0; i <= part->elements_count; i++)
+            part->element_first[i] = i;
+    }
+    mesh_bounds(mesh);
+    if (mesh_check(mesh, &error) != STATUS_OK)
+        fail_msg("%s", error.text);
+    return mesh;
+}
+
+/* Closed, with a hole and sides that shade each other: radii 2 m and 0.7 m, upright, 3 m high. */
+static struct mesh *ring(struct arena *arena, int around, int along)
+{
+    struct mesh *mesh = mesh_make(arena, MATERIAL_BARK, 2 * (size_t)(around * along));
+    for (int i = 0; i < around; i++)
+        for (int j = 0; j < along; j++) {
+            float corner[4][3];
+            for (int k = 0; k < 4; k++) {
+                double a = 2 * M_PI * ((i + (k & 1)) % around) / around;
+                double b = 2 * M_PI * ((j + k / 2) % along) / along;
+                double out = 2 + 0.7 * cos(b);
+                corner[k][0] = (float)(out * cos(a));
+                corner[k][1] = (float)(3 + out * sin(a));
+                corner[k][2] = (float)(0.7 * sin(b));
+            }
+            add_triangle(mesh, corner[0], corner[1], corner[3]);
+            add_triangle(mesh, corner[0], corner[3], corner[2]);
+        }
+    return mesh_done(arena, mesh);
+}
+
+/* Loose triangles in a box of 5 m above the ground. */
+static struct mesh *leaves(struct arena *arena, size_t count)
+{
+    struct mesh *mesh = mesh_make(arena, MATERIAL_LEAF, count);
+    struct random random = random_seed(4, 9);
+    while (mesh->triangles_count < count) {
+        float corner[3][3], at[3];
+        for (int i = 0; i < 3; i++)
+            at[i] = 5 * random_float(&random) - (i == 1 ? -1 : 2.5f);
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < 3; i++)
+                corner[k][i] = at[i] + 1.4f * random_float(&random) - 0.7f;
+        add_triangle(mesh, corner[0], corner[1], corner[2]);
+    }
+    return mesh_done(arena, mesh);
+}
+
+/* A level square, from two triangles, facing up. */
+static void add_square(struct mesh *mesh, float half_m, float height_m)
+{
+    const float a[3] = {-half_m, height_m, -half_m}, b[3] = {-half_m, height_m, half_m};
+    const float c[3] = {half_m, height_m, half_m}, d[3] = {half_m, height_m, -half_m};
+    add_triangle(mesh, a, b, c);
+    add_triangle(mesh, a, c, d);
+}
+
+static struct mesh *squares(struct arena *arena, size_t count, float half_m)
+{
+    struct mesh *mesh = mesh_make(arena, MATERIAL_LEAF, 2 * count);
+    for (size_t i = 0; i < count; i++)
+        add_square(mesh, half_m, 2 + 0.004f * (float)i);
+    return mesh_done(arena, mesh);
+}
+
+static void add_to_embree(struct rig *rig, const struct mesh *mesh, const struct instance *instance)
+{
+    struct embree_part part = {0, (uint32_t)mesh->triangles_count, NULL, NULL};
+    struct embree_mesh copy = {mesh->positions[0],
+                               mesh->vertices_count,
+                               mesh->triangles[0],
+                               mesh->triangles_count,
+                               &part,
+                               1};
+    mat4 matrix = GLM_MAT4_IDENTITY_INIT;
+    float to_world[12];
+    if (instance)
+        instance_matrix(instance, matrix);
+    for (int i = 0; i < 12; i++)
+        to_world[i] = matrix[i / 3][i % 3];
+    if (embree_add_mesh(rig->embree, &copy, &rig->error) != STATUS_OK)
+        fail_msg("%s", rig->error.text);
+    embree_add_instance(rig->embree, instance ? 0 : 1, to_world);
+}
+
+/* height: of the terrain at x, z in [-1, 1] of it. */
+static struct rig *rig_open(struct mesh *plant, struct arena *arena, float (*height)(float, float))
+{
+    enum { SIDE = 41 };
+    struct rig *rig = ARENA_NEW(arena, struct rig);
+    struct scene *scene = rig->scene = scene_by_hand(arena, WIDTH, HEIGHT);
+    struct terrain *ground = &scene->terrain;
+    rig->arena = arena;
+    rig->plant = plant;
+    scene_plant(arena, scene, plant, 1);
+    scene->sky = (struct sky){{0}, {0}, {0}};
+    *ground =
+        (struct terrain){.samples_x = SIDE, .samples_z = SIDE, .size_x_m = 80, .size_z_m = 80};
+    ground->heights_m = ARENA_ARRAY(arena, float, SIDE *SIDE);
+    ground->normals = arena_alloc(arena, SIDE * SIDE, sizeof *ground->normals);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        float x = (float)(i % SIDE) / 20 - 1, z = (float)(i / SIDE) / 20 - 1, step = 0.05f;
+        float slope_x = (height(x + step, z) - height(x - step, z)) / 4;
+        float slope_z = (height(x, z + step) - height(x, z - step)) / 4;
+        float length = sqrtf(slope_x * slope_x + slope_z * slope_z + 1);
+        ground->heights_m[i] = height(x, z);
+        ground->normals[i][0] = -slope_x / length;
+        ground->normals[i][1] = 1 / length;
+        ground->normals[i][2] = -slope_z / length;
+    }
+    for (int i = 0; i < 3; i++)
+        ground->albedo[i] = 0.5f;
+    return rig;
+}
+
+static void rig_look(struct rig *rig, const float eye[3], const float target[3], const float sun[3])
+{
+    float length = sqrtf(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]);
+    view_look_at(rig->scene, eye, target, &rig->view);
+    for (int i = 0; i < 3; i++)
+        rig->view.sun_direction[i] = sun[i] / length;
+    if (rig->embree)
+        return;
+    if (embree_create(rig->arena, 1, &rig->embree, &rig->error) != STATUS_OK)
+        fail_msg("%s", rig->error.text);
+    add_to_embree(rig, rig->plant, &rig->scene->instances[0]);
+    add_to_embree(rig, terrain_mesh(rig->arena, &rig->scene->terrain), NULL);
+    if (embree_commit(rig->embree, &rig->error) != STATUS_OK)
+        fail_msg("%s", rig->error.text);
+}
+
+static float flat(float x, float z)
+{
+    return 0 * x * z;
+}
+
+static float hills(float x, float z)
+{
+    return 4 * cosf(9 * x) * cosf(7 * z) - 4;
+}
+
+/* The sun's share of what a ray sees: 0 or 1; -1 in the sky, and where the smooth normal nearly
+ * says otherwise than the triangle, which is not the shadow's business. */
+static int sun_at(struct rig *rig, const float direction[3])
+{
+    struct embree_packet packet = {0};
+    const float *sun = rig->view.sun_direction;
+    for (int i = 0; i < 3; i++) {
+        packet.origin[i][0] = rig->view.eye_m[i];
+        packet.direction[i][0] = direction[i];
+    }
+    packet.far[0] = INFINITY;
+    embree_intersect(rig->embree, &packet, 1, false);
+    if (packet.geometry[0] == EMBREE_NONE)
+        return -1;
+    bool ground = packet.instance[0] == 1;
+    const struct instance *at = &rig->scene->instances[0];
+    float c = cosf(at->rotation_rad), s = sinf(at->rotation_rad), n[3];
+    for (int i = 0; i < 3; i++)
+        n[i] = packet.normal[i][0];
+    if (!ground) {
+        n[1] /= at->stretch;
+        float x = n[0] * c + n[2] * s, z = n[2] * c - n[0] * s;
+        n[0] = x;
+        n[2] = z;
+    }
+    float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    float facing = 0, seen = 0, distance = packet.far[0];
+    for (int i = 0; i < 3; i++) {
+        n[i] /= length;
+        facing += n[i] * sun[i];
+        seen -= n[i] * direction[i];
+    }
+    if (seen < 0)
+        facing = -facing;
+    bool leaf = !ground && rig->plant->materials->kind == MATERIAL_LEAF;
+    if (ground) {
+        float x = rig->view.eye_m[0] + distance * direction[0];
+        float z = rig->view.eye_m[2] + distance * direction[2];
+        const struct terrain *terrain = &rig->scene->terrain;
+        int i = (int)(x / 2 + 20), j = (int)(z / 2 + 20);
+        float least = 1;
+        for (int k = 0; k < 4; k++) {
+            const float *m = terrain->normals[(j + k / 2 > 40 ? 40 : j + k / 2) * 41 +
+                                              (i + k % 2 > 40 ? 40 : i + k % 2)];
+            least = fminf(least, m[0] * sun[0] + m[1] * sun[1] + m[2] * sun[2]);
+        }
+        if (least < 0.02f)
+            return -1;
+    }
+    if (facing <= 0 && !leaf)
+        return 0;
+    float side = (facing > 0 ? 1.0f : -1.0f) * (seen < 0 ? -1.0f : 1.0f) * 1e-4f;
+    for (int i = 0; i < 3; i++) {
+        packet.origin[i][0] += distance * direction[i] + side * n[i];
+        packet.direction[i][0] = sun[i];
+    }
+    packet.far[0] = INFINITY;
+    return !embree_occluded(rig->embree, &packet, 1);
+}
+
+/* Pixels whose sun is wrong and that have no neighbour where it would be right; edge: all wrong. */
+static int wrong_pixels(struct rig *rig, const char *options, int *edge)
+{
+    struct setting setting = {.method = "shadow-volume",
+                              .options = options,
+                              .backend = "osmesa",
+                              .effects = EFFECT_SUN_SHADOWS | EFFECT_TWO_SIDED,
+                              .format = TARGET_RGBA32F};
+    struct picture picture = picture_draw(rig->arena, rig->scene, &rig->view, &setting);
+    static int truth[HEIGHT][WIDTH];
+    int wrong = 0;
+    *edge = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            float direction[3];
+            view_ray(&rig->view, (float)x + 0.5f, (float)y + 0.5f, direction);
+            truth[y][x] = sun_at(rig, direction);
+        }
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            float red = picture.rgba[4 * (y * WIDTH + x)];
+            assert_true(isfinite(red));
+            bool near = false;
+            for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < HEIGHT; v++)
+                for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < WIDTH; u++)
+                    near = near || truth[v][u] == (red > 0) || truth[v][u] < 0;
+            *edge += truth[y][x] >= 0 && truth[y][x] != (red > 0);
+            wrong += !near;
+        }
+    return wrong;
+}
+
+/* Almost all pixels are right, and those that are not are beside the true edge. */
+static void assert_exact(struct rig *rig, const char *options)
+{
+    int edge, wrong = wrong_pixels(rig, options, &edge);
+    if (wrong || edge > 25)
+        fail_msg("%s: %d pixels wrong off the edge, %d in all", options, wrong, edge);
+}
+
+static const float front[3] = {3, 6, 13}, middle[3] = {0, 2, 0};
+
+static void test_shadow__a_closed_mesh_casts_what_rays_find(void **unused)
+{
+    static const float suns[][3] = {
+        {0.5f, 0.8f, 0.4f}, {0, 1, 0}, {-0.9f, 0.03f, 0.2f}, {1, 0.6f, -1}};
+    static const char *const options[] = {"samples=1", "samples=1,test=z-fail",
+                                          "samples=1,test=z-pass", "samples=1,volumes=triangles"};
+    struct arena *arena = arena_create(0);
+    struct rig *rig = rig_open(ring(arena, 24, 12), arena, flat);
+    rig->scene->instances[0] = (struct instance){
+        .position_m = {0.3f, 0.2f, -1}, .rotation_rad = 0.7f, .scale = 1.1f, .stretch = 0.8f};
+    for (int s = 0; s < 4; s++) {
+        rig_look(rig, front, middle, suns[s]);
+        assert_exact(rig, options[s]);
+        assert_exact(rig, options[0]);
+    }
+    embree_destroy(rig->embree);
+    arena_destroy(arena);
+    (void)unused;
+}
+
+static void test_shadow__open_leaves_shade_each_other_and_not_themselves(void **unused)
+{
+    static const float suns[][3] = {{0.5f, 0.8f, 0.4f}, {-0.3f, 0.5f, -0.8f}};
+    struct arena *arena = arena_create(0);
+    struct rig *rig = rig_open(leaves(arena, 60), arena, flat);
+    for (int s = 0; s < 2; s++) {
+        rig_look(rig, front, middle, suns[s]);
+        assert_exact(rig, "samples=1");
+        assert_exact(rig, s ? "samples=1,volumes=triangles" : "samples=1,test=z-fail");
+    }
+    embree_destroy(rig->embree);
+    arena_destroy(arena);
+    (void)unused;
+}
+
+static void test_shadow__hills_shade_each_other(void **unused)
+{
+    struct arena *arena = arena_create(0);
+    struct rig *rig = rig_open(ring(arena, 12, 8), arena, hills);
+    rig_look(rig, (float[3]){5, 14, 30}, (float[3]){0, -4, 0}, (float[3]){1, 0.25f, 0.3f});
+    assert_exact(rig, "samples=1");
+    embree_destroy(rig->embree);
+    arena_destroy(arena);
+    (void)unused;
+}
+
+static void test_shadow__an_eye_within_a_shadow_wants_z_fail(void **unused)
+{
+    int edge;
+    struct arena *arena = arena_create(0);
+    struct rig *rig = rig_open(squares(arena, 1, 6), arena, flat);
+    rig_look(rig, (float[3]){1, 1.2f, 3}, (float[3]){-6, 0, -30}, (float[3]){0.2f, 1, 0.1f});
+    assert_exact(rig, "samples=1,test=z-fail");
+    assert_exact(rig, "samples=1");
+    wrong_pixels(rig, "samples=1,test=z-pass", &edge);
+    assert_true(edge > WIDTH * HEIGHT / 4);
+    embree_destroy(rig->embree);
+    arena_destroy(arena);
+    (void)unused;
+}
+
+static void
+test_shadow__an_eye_toward_the_sun_and_planes_a_million_apart_are_no_matter(void **unused)
+{
+    struct arena *arena = arena_create(0);
+    struct rig *rig = rig_open(ring(arena, 24, 12), arena, flat);
+    rig_look(rig, front, middle, (float[3]){-0.3f, 0.15f, -1}); /* in the picture */
+    assert_exact(rig, "samples=1");
+    rig->scene->camera.near_m = 1e-3f;
+    rig->scene->camera.far_m = 1e3f;
+    rig_look(rig, front, middle, (float[3]){-0.6f, 0.5f, 1});
+    assert_exact(rig, "samples=1,test=z-fail");
+    embree_destroy(rig->embree);
+    arena_destroy(arena);
+    (void)unused;
+}
+
+/* Eight bits wrap: 256 volumes are 0, and so is 512; every other number is a shadow. */
+static void test_shadow__counts_wrap_at_256_volumes_alone(void **unused)
+{
+    static const struct {
+        size_t count;
+        bool lit;
+    } stacks[] = {{1, false}, {255, false}, {256, true}, {257, false}, {512, true}};
+    for (size_t s = 0; s < sizeof stacks / sizeof *stacks; s++) {
+        struct arena *arena = arena_create(0);
+        struct rig *rig = rig_open(squares(arena, stacks[s].count, 6), arena, flat);
+        struct setting setting = {.method = "shadow-volume",
+                                  .options = "samples=1,test=z-fail",
+                                  .backend = "osmesa",
+                                  .effects = EFFECT_SUN_SHADOWS,
+                                  .format = TARGET_RGBA32F};
+        view_look_at(rig->scene, (float[3]){0, 1.5f, 0}, (float[3]){0, 0, 0.1f}, &rig->view);
+        struct picture picture = picture_draw(arena, rig->scene, &rig->view, &setting);
+        float red = picture.rgba[4 * (HEIGHT / 2 * WIDTH + WIDTH / 2)];
+        assert_int_equal(red > 0, stacks[s].lit);
+        arena_destroy(arena);
+    }
+    (void)unused;
+}
+
+/* Each edge is run through as often one way as the other; 0 is the point at infinity. */
+static void assert_closed(const struct shadow_boundary *boundary, size_t points)
+{
+    int *balance = calloc(points * points, sizeof *balance);
+    const uint32_t *lists[3] = {boundary->walls, boundary->caps, boundary->leaf_caps};
+    size_t counts[3] = {boundary->walls_count, boundary->caps_count, boundary->leaf_caps_count};
+    assert_non_null(balance);
+    for (int l = 0; l < 3; l++)
+        for (size_t i = 0; i < counts[l]; i++) {
+            uint32_t from = lists[l][i], to = lists[l][i % 3 == 2 ? i - 2 : i + 1];
+            balance[from * points + to]++;
+            balance[to * points + from]--;
+        }
+    for (size_t i = 0; i < points * points; i++)
+        assert_int_equal(balance[i], 0);
+    free(balance);
+}
+
+static void test_caster__boundaries_are_closed_whatever_the_mesh_and_the_sun(void **unused)
+{
+    struct arena *arena = arena_create(0);
+    struct random random = random_seed(1, 1);
+    struct mesh *meshes[3] = {ring(arena, 12, 8), leaves(arena, 60), squares(arena, 1, 1)};
+    for (int m = 0; m < 3; m++)
+        for (int s = 0; s < 20; s++) {
+            struct shadow_caster caster;
+            float sun[3] = {random_float(&random) - 0.5f, random_float(&random) - 0.5f,
+                            s ? random_float(&random) - 0.5f : 0};
+            shadow_caster_build(arena, meshes[m], false, &caster);
+            size_t room = shadow_caster_room(&caster);
+            struct shadow_boundary boundary = {.walls = ARENA_ARRAY(arena, uint32_t, room),
+                                               .caps = ARENA_ARRAY(arena, uint32_t, room / 3),
+                                               .leaf_caps = ARENA_ARRAY(arena, uint32_t, room / 3)};
+            assert_int_equal(caster.kinds[0], m ? SHADOW_LEAF : SHADOW_SOLID);
+            shadow_caster_extrude(&caster, sun, s % 4 != 3, 1, 0, &boundary);
+            assert_true(boundary.walls_count > 0);
+            assert_closed(&boundary, caster.points_count + 1);
+        }
+    arena_destroy(arena);
+    (void)unused;
+}
+
+/* A cube seen from a corner is a hexagon, from a side a square. */
+static void test_caster__the_silhouette_of_a_cube_has_six_or_four_edges(void **unused)
+{
+    struct arena *arena = arena_create(0);
+    struct mesh *cube = mesh_make(arena, MATERIAL_BARK, 12);
+    for (int side = 0; side < 6; side++) {
+        float corner[4][3];
+        int a = side / 2, b = (a + 1) % 3, c = (a + 2) % 3;
+        for (int k = 0; k < 4; k++) {
+            bool first = k == 1 || k == 2, second = k >= 2;
+            corner[k][a] = (float)(side & 1);
+            corner[k][b] = side & 1 ? first : second;
+            corner[k][c] = side & 1 ? second : first;
+        }
+        add_triangle(cube, corner[0], corner[1], corner[2]);
+        add_triangle(cube, corner[0], corner[2], corner[3]);
+    }
+    mesh_done(arena, cube);
+    struct shadow_caster caster;
+    shadow_caster_build(arena, cube, false, &caster);
+    assert_int_equal(caster.points_count, 8);
+    assert_int_equal(caster.edges_count, 18);
+    assert_int_equal(caster.kinds[0], SHADOW_SOLID);
+    uint32_t walls[108], caps[36], leaf_caps[1];
+    struct shadow_boundary boundary = {walls, caps, leaf_caps, 0, 0, 0};
+    shadow_caster_extrude(&caster, (float[3]){1, 0.9f, 0.8f}, true, 1, 0, &boundary);
+    assert_int_equal(boundary.walls_count, 3 * 6);
+    assert_int_equal(boundary.caps_count, 3 * 6);
+    boundary = (struct shadow_boundary){walls, caps, leaf_caps, 0, 0, 0};
+    shadow_caster_extrude(&caster, (float[3]){0, 1, 0}, true, 1, 0, &boundary);
+    assert_int_equal(boundary.walls_count, 3 * 4);
+    boundary = (struct shadow_boundary){walls, caps, leaf_caps, 0, 0, 0};
+    shadow_caster_extrude(&caster, (float[3]){0, 1, 0}, false, 1, 0, &boundary);
+    assert_int_equal(boundary.walls_count, 3 * 36);
+    arena_destroy(arena);
+    (void)unused;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_shadow__a_closed_mesh_casts_what_rays_find),
+        cmocka_unit_test(test_shadow__open_leaves_shade_each_other_and_not_themselves),
+        cmocka_unit_test(test_shadow__hills_shade_each_other),
+        cmocka_unit_test(test_shadow__an_eye_within_a_shadow_wants_z_fail),
+        cmocka_unit_test(
+            test_shadow__an_eye_toward_the_sun_and_planes_a_million_apart_are_no_matter),
+        cmocka_unit_test(test_shadow__counts_wrap_at_256_volumes_alone),
+        cmocka_unit_test(test_caster__boundaries_are_closed_whatever_the_mesh_and_the_sun),
+        cmocka_unit_test(test_caster__the_silhouette_of_a_cube_has_six_or_four_edges),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
