@@ -266,9 +266,9 @@ static int sun_at(struct rig *rig, const float direction[3])
 }
 
 /* Pixels whose sun is wrong and that have no neighbour where it would be right; edge: all wrong. */
-static int wrong_pixels(struct rig *rig, const char *options, int *edge)
+static int wrong_pixels(struct rig *rig, const char *method, const char *options, int *edge)
 {
-    struct setting setting = {.method = "shadow-volume",
+    struct setting setting = {.method = method,
                               .options = options,
                               .backend = "osmesa",
                               .effects = EFFECT_SUN_SHADOWS | EFFECT_TWO_SIDED,
@@ -300,7 +300,7 @@ static int wrong_pixels(struct rig *rig, const char *options, int *edge)
 /* Almost all pixels are right, and those that are not are beside the true edge. */
 static void assert_exact(struct rig *rig, const char *options)
 {
-    int edge, wrong = wrong_pixels(rig, options, &edge);
+    int edge, wrong = wrong_pixels(rig, "shadow-volume", options, &edge);
     if (wrong || edge > 25)
         fail_msg("%s: %d pixels wrong off the edge, %d in all", options, wrong, edge);
 }
@@ -353,6 +353,26 @@ static void test_shadow__hills_shade_each_other(void **unused)
     (void)unused;
 }
 
+/* More azimuths, fewer wrong pixels; the ring still casts its volume. */
+static void test_horizon_map__more_azimuths_have_fewer_errors(void **unused)
+{
+    struct arena *arena = arena_create(0);
+    struct rig *rig = rig_open(ring(arena, 12, 8), arena, hills);
+    int wrong[3];
+    rig->scene->instances[0].position_m[1] = 2;
+    rig_look(rig, (float[3]){5, 14, 30}, (float[3]){0, -4, 0}, (float[3]){1, 0.25f, 0.3f});
+    wrong_pixels(rig, "horizon-map", "samples=1,azimuths=4", &wrong[0]);
+    wrong_pixels(rig, "horizon-map", "samples=1,azimuths=4,lookup=nearest", &wrong[1]);
+    wrong_pixels(rig, "horizon-map", "samples=1,azimuths=64", &wrong[2]);
+    printf("# wrong of %d pixels: 4 azimuths %d, nearest %d, 64 azimuths %d\n", WIDTH * HEIGHT,
+           wrong[0], wrong[1], wrong[2]);
+    assert_true(wrong[2] < WIDTH * HEIGHT / 25);
+    assert_true(wrong[2] < wrong[0] / 2 && wrong[2] < wrong[1] / 2);
+    embree_destroy(rig->embree);
+    arena_destroy(arena);
+    (void)unused;
+}
+
 static void test_shadow__an_eye_within_a_shadow_wants_z_fail(void **unused)
 {
     int edge;
@@ -361,7 +381,7 @@ static void test_shadow__an_eye_within_a_shadow_wants_z_fail(void **unused)
     rig_look(rig, (float[3]){1, 1.2f, 3}, (float[3]){-6, 0, -30}, (float[3]){0.2f, 1, 0.1f});
     assert_exact(rig, "samples=1,test=z-fail");
     assert_exact(rig, "samples=1");
-    wrong_pixels(rig, "samples=1,test=z-pass", &edge);
+    wrong_pixels(rig, "shadow-volume", "samples=1,test=z-pass", &edge);
     assert_true(edge > WIDTH * HEIGHT / 4);
     embree_destroy(rig->embree);
     arena_destroy(arena);
@@ -494,6 +514,7 @@ int main(void)
         cmocka_unit_test(test_shadow__a_closed_mesh_casts_what_rays_find),
         cmocka_unit_test(test_shadow__open_leaves_shade_each_other_and_not_themselves),
         cmocka_unit_test(test_shadow__hills_shade_each_other),
+        cmocka_unit_test(test_horizon_map__more_azimuths_have_fewer_errors),
         cmocka_unit_test(test_shadow__an_eye_within_a_shadow_wants_z_fail),
         cmocka_unit_test(
             test_shadow__an_eye_toward_the_sun_and_planes_a_million_apart_are_no_matter),

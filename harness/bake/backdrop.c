@@ -23,7 +23,10 @@ struct backdrop {
     const struct scene *scene;
     GLuint sky_program, sky_vertices; /* an empty vertex array */
     GLuint terrain_program, terrain_vertices;
-    GLuint smooth_program; /* for an eye above a terrain that is bent little; else 0 */
+    GLuint smooth_program;            /* for an eye above a terrain that is bent little; else 0 */
+    GLuint skyline_program, skylines; /* 0: no horizon maps */
+    int azimuths;
+    bool mixed;
     size_t chunks_count;
     struct chunk *chunks;
     struct horizon *horizon;
@@ -201,6 +204,47 @@ void backdrop_cast(struct workspace *workspace, const struct backdrop *backdrop,
                      0);
 }
 
+enum status backdrop_skyline(struct workspace *workspace, struct backdrop *backdrop,
+                             const struct skyline *skyline, bool mixed)
+{
+    struct gl *gl = workspace->gl;
+    if (!backdrop->chunks_count)
+        return STATUS_OK;
+    backdrop->azimuths = skyline->azimuths;
+    backdrop->mixed = mixed;
+    backdrop->skylines = gl_texture(gl, GL_TEXTURE_2D_ARRAY, 1, GL_R32F, (int)skyline->samples_x,
+                                    (int)skyline->samples_z, skyline->azimuths);
+    gl->TextureSubImage3D(backdrop->skylines, 0, 0, 0, 0, (GLsizei)skyline->samples_x,
+                          (GLsizei)skyline->samples_z, skyline->azimuths, GL_RED, GL_FLOAT,
+                          skyline->tangents);
+    gl->TextureParameteri(backdrop->skylines, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl->TextureParameteri(backdrop->skylines, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl->TextureParameteri(backdrop->skylines, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl->TextureParameteri(backdrop->skylines, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    const char *defines = arena_printf(workspace->arena, "SKYLINE 1\n%s",
+                                       terrain_defines(workspace, backdrop->scene));
+    return gl_program(gl, "skyline", backdrop_glsl, defines, &backdrop->skyline_program,
+                      workspace->error);
+}
+
+static void skyline_uniforms(struct gl *gl, const struct backdrop *backdrop,
+                             const struct view *view)
+{
+    GLuint program = backdrop->skyline_program;
+    const struct terrain *terrain = &backdrop->scene->terrain;
+    const float *sun = view->sun_direction;
+    float level = sqrtf(sun[0] * sun[0] + sun[2] * sun[2]), azimuths = (float)backdrop->azimuths;
+    float layer = atan2f(sun[0], sun[2]) / (2 * (float)M_PI) * azimuths;
+    layer = backdrop->mixed ? layer : rintf(layer);
+    layer = fmodf(layer + azimuths, azimuths);
+    gl->Uniform2f(gl_uniform(gl, program, "terrain_m"), terrain->size_x_m, terrain->size_z_m);
+    gl->Uniform1f(gl_uniform(gl, program, "sun_layer"), layer);
+    /* no sun at all: nothing is in its shadow */
+    float tangent = level > 0 || sun[1] != 0 ? sun[1] / fmaxf(level, 1e-6f) : 1e6f;
+    gl->Uniform1f(gl_uniform(gl, program, "sun_tangent"), tangent);
+    gl->BindTextureUnit(0, backdrop->skylines);
+}
+
 /* Above a height field and within its borders the first thing that a ray meets is a front face. */
 static bool eye_is_above(const struct terrain *terrain, const float eye_m[3])
 {
@@ -230,8 +274,11 @@ static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
     if (backdrop->chunks_count == 0)
         return;
     bool above = eye_is_above(&scene->terrain, view->eye_m);
-    bool smooth = above && backdrop->smooth_program && !workspace->masked && !backdrop->shadows;
+    bool mapped = backdrop->skyline_program != 0;
+    bool smooth =
+        above && backdrop->smooth_program && !workspace->masked && !mapped && !backdrop->shadows;
     GLuint program = smooth              ? backdrop->smooth_program
+                     : mapped            ? backdrop->skyline_program
                      : backdrop->shadows ? backdrop->shadowed_program
                                          : backdrop->terrain_program;
     gl->UseProgram(program);
@@ -243,6 +290,8 @@ static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
         smooth_uniforms(workspace, program, scene);
     else
         gl->Uniform3fv(gl_uniform(gl, program, "albedo"), 1, scene->terrain.albedo);
+    if (mapped)
+        skyline_uniforms(gl, backdrop, view);
     if (above)
         gl->Enable(GL_CULL_FACE);
     /* Neighbouring chunks that are seen go in one call. */

@@ -1,6 +1,9 @@
 // Sky and terrain. SKY: one triangle over the picture; else the terrain's mesh. SMOOTH: seen from above, and bent so
 // little that N.L may be interpolated instead of N. FOG: with fog. COLORS: of each vertex.
-// SHADOWED: behind shadow_map.glsl.
+// SHADOWED: behind shadow_map.glsl. SKYLINE: in the shadow of horizon maps.
+#if defined(FOG) || defined(SKYLINE) || defined(SHADOWED)
+#define PLACED
+#endif
 #pragma stage vertex
 #ifdef SKY
 uniform vec3 corner_rays[3];  // directions through (-1,-1), (3,-1), (-1,3) in clip space, not unit
@@ -19,7 +22,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 color_in;
 out vec3 tint;
 #endif
-#if defined(FOG) || defined(SHADOWED)
+#ifdef PLACED
 out vec3 position_m;
 #endif
 #ifdef SMOOTH
@@ -33,7 +36,7 @@ void main()
 #ifdef COLORS
     tint = color_in;
 #endif
-#if defined(FOG) || defined(SHADOWED)
+#ifdef PLACED
     position_m = position;
 #endif
 #ifdef SMOOTH
@@ -63,7 +66,7 @@ uniform vec3 albedo;
 #ifdef COLORS
 in vec3 tint;
 #endif
-#if defined(FOG) || defined(SHADOWED)
+#ifdef PLACED
 in vec3 position_m;
 #endif
 #ifdef SMOOTH
@@ -73,8 +76,29 @@ in float cosine;
 in vec3 shading_normal;
 #endif
 
+#ifdef SKYLINE
+uniform vec2 terrain_m;       // size along x and z
+uniform float sun_layer;      // azimuth, in layers of the maps
+uniform float sun_tangent;    // of the elevation
+layout(binding = 0) uniform sampler2DArray skylines;
+
+// The horizon of the two nearest azimuths, mixed, or of the nearest where layers are whole (Max 1988).
+bool in_shadow()
+{
+    vec3 size = vec3(textureSize(skylines, 0));
+    vec2 at = ((position_m.xz / terrain_m + 0.5) * (size.xy - 1.0) + 0.5) / size.xy;
+    float low = floor(sun_layer);
+    float horizon = mix(texture(skylines, vec3(at, low)).r, texture(skylines, vec3(at, mod(low + 1.0, size.z))).r,
+                        sun_layer - low);
+    return sun_tangent < horizon;
+}
+#endif
+
 void main()
 {
+#ifdef SKYLINE
+    sun_visibility = in_shadow() ? 0.0 : 1.0;
+#endif
 #ifdef SHADOWED
     sun_visibility = shadow_visibility(position_m, shading_normal);
 #endif

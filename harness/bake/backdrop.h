@@ -2,6 +2,7 @@
 #ifndef TREELINE_BAKE_BACKDROP_H
 #define TREELINE_BAKE_BACKDROP_H
 
+#include "bake/skyline.h"
 #include "method/method.h"
 
 struct backdrop;
@@ -16,6 +17,10 @@ enum status backdrop_receive(struct workspace *workspace, struct backdrop *backd
 /* The ground, where it is bent, as a caster of a shadow map's pass. */
 void backdrop_cast(struct workspace *workspace, const struct backdrop *backdrop,
                    const struct shadow_pass *pass);
+/* From now on the terrain is drawn in the shadow of its horizon maps. mixed: of the two nearest
+ * azimuths, else of the nearest, as Max 1988 has it. */
+enum status backdrop_skyline(struct workspace *workspace, struct backdrop *backdrop,
+                             const struct skyline *skyline, bool mixed);
 /* Clears the bound framebuffer's colour and depth and draws sky and terrain with alpha 0. Leaves
  * depth test and depth write on, GL_LESS, blending off, no culling, viewport of the view. */
 void backdrop_draw(struct workspace *workspace, struct backdrop *backdrop, const struct view *view);

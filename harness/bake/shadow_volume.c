@@ -89,7 +89,7 @@ static enum status find_casters(struct workspace *workspace, const struct scene 
     }
     for (size_t i = 0; i < scene->instances_count; i++)
         add_piece(volume, &casters[scene->instances[i].species], &scene->instances[i]);
-    mesh = terrain_mesh(arena, &scene->terrain);
+    mesh = volume->request.trees_alone ? NULL : terrain_mesh(arena, &scene->terrain);
     if (mesh) {
         shadow_caster_build(arena, mesh, true, &casters[scene->species_count]);
         add_piece(volume, &casters[scene->species_count], NULL);

@@ -17,7 +17,8 @@ enum shadow_test { SHADOW_AUTO, SHADOW_Z_FAIL, SHADOW_Z_PASS };
 
 struct shadow_volume_request {
     enum shadow_test test;
-    bool triangles; /* each triangle has its own volume, without silhouettes */
+    bool trees_alone; /* the terrain casts none */
+    bool triangles;   /* each triangle has its own volume, without silhouettes */
 };
 
 struct shadow_volume;

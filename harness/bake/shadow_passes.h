@@ -1,0 +1,25 @@
+/* The three passes of a scene with shadow volumes (Abderrahmani 2018, 5.1): all surfaces in the
+ * sky's light, volumes into the stencil buffer, all surfaces again in the sun's light where none is
+ * counted. Of the relief also by horizon maps. */
+#ifndef TREELINE_BAKE_SHADOW_PASSES_H
+#define TREELINE_BAKE_SHADOW_PASSES_H
+
+#include "bake/shadow_volume.h"
+
+struct shadow_passes_request {
+    int samples; /* a pixel: 1, 4 or 16 */
+    struct shadow_volume_request volume;
+    int azimuths; /* of horizon maps, and then the relief casts no volume; 0: none */
+    bool mixed;   /* of the two nearest azimuths */
+};
+
+struct shadow_passes;
+
+enum status shadow_passes_prepare(struct workspace *workspace, const struct scene *scene,
+                                  const struct shadow_passes_request *request,
+                                  struct shadow_passes **passes);
+/* One picture. Without shadows, or without anything that casts volumes, in one pass. */
+enum status shadow_passes_draw(struct workspace *workspace, struct shadow_passes *passes,
+                               const struct view *view, struct target *target);
+
+#endif

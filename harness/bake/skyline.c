@@ -1,0 +1,181 @@
+/* Sweeps over the height field, one for each azimuth. */
+#include "bake/skyline.h"
+
+#include <string.h>
+
+/* A sweep along columns, the axis that the azimuth runs along faster, or along rows turned around.
+ */
+struct sweep {
+    const struct terrain *terrain;
+    float *tangents;   /* of this azimuth */
+    int along, across; /* samples of the two axes */
+    size_t stride_along, stride_across;
+    bool ascending; /* the azimuth runs toward higher numbers along */
+    double slope;   /* across a step along, in samples */
+    float step_m;   /* level distance of a step along */
+};
+
+struct hull {
+    float *at_m, *height_m; /* from far to near */
+    int count;
+};
+
+static struct sweep sweep_of(const struct terrain *terrain, double azimuth_rad)
+{
+    double x = sin(azimuth_rad) * (terrain->samples_x - 1) / terrain->size_x_m;
+    double z = cos(azimuth_rad) * (terrain->samples_z - 1) / terrain->size_z_m;
+    bool by_x = fabs(x) >= fabs(z);
+    double fast = by_x ? x : z, other = by_x ? z : x;
+    return (struct sweep){.terrain = terrain,
+                          .along = (int)(by_x ? terrain->samples_x : terrain->samples_z),
+                          .across = (int)(by_x ? terrain->samples_z : terrain->samples_x),
+                          .stride_along = by_x ? 1 : terrain->samples_x,
+                          .stride_across = by_x ? terrain->samples_x : 1,
+                          .ascending = fast > 0,
+                          .slope = other / fast,
+                          .step_m = (float)(1 / fabs(fast))};
+}
+
+/* Of the surface at a place in samples; places beyond the border are on it. */
+static float height_at(const struct sweep *sweep, double along, double across)
+{
+    along = fmin(fmax(along, 0), sweep->along - 1);
+    across = fmin(fmax(across, 0), sweep->across - 1);
+    int a = (int)fmin(along, sweep->along - 2), b = (int)fmin(across, sweep->across - 2);
+    double u = along - a, v = across - b;
+    const float *at = sweep->terrain->heights_m + (size_t)a * sweep->stride_along +
+                      (size_t)b * sweep->stride_across;
+    double base = at[0], corner = at[sweep->stride_along + sweep->stride_across];
+    double by_along = at[sweep->stride_along], by_across = at[sweep->stride_across];
+    return (float)(u >= v ? base + u * (by_along - base) + v * (corner - by_along)
+                          : base + v * (by_across - base) + u * (corner - by_across));
+}
+
+/* The tangent from a point before the hull; the hull loses what the point hides from all after. */
+static float hull_look(struct hull *hull, float at_m, float height_m)
+{
+    float best = SKYLINE_OPEN;
+    if (hull->count)
+        best = (hull->height_m[hull->count - 1] - height_m) /
+               fabsf(hull->at_m[hull->count - 1] - at_m);
+    while (hull->count > 1) {
+        int next = hull->count - 2;
+        float slope = (hull->height_m[next] - height_m) / fabsf(hull->at_m[next] - at_m);
+        if (slope < best)
+            break;
+        best = slope;
+        hull->count--;
+    }
+    hull->at_m[hull->count] = at_m;
+    hull->height_m[hull->count++] = height_m;
+    return best;
+}
+
+/* Where a value that runs evenly from one to another is whole, as shares of the way, excluding its
+ * ends. Returns how many; at most 2 of less than 2 and a bit. */
+static int whole_shares(double from, double to, double *shares)
+{
+    int count = 0;
+    double rise = to - from;
+    for (double whole = ceil(fmin(from, to)); whole <= fmax(from, to) && count < 3; whole++) {
+        double share = (whole - from) / rise;
+        if (share > 1e-9 && share < 1 - 1e-9)
+            shares[count++] = share;
+    }
+    return count;
+}
+
+/* The surface bends where the line passes from triangle to triangle: what is between two columns.
+ */
+static void look_between(const struct sweep *sweep, int column, double across, struct hull *hull,
+                         int step)
+{
+    double shares[6], back = sweep->ascending ? 1 : -1;
+    double from = across + back * sweep->slope;
+    int count = whole_shares(from, across, shares);
+    count += whole_shares(column + back - from, column - across, shares + count);
+    for (int i = 1; i < count; i++)
+        for (int j = i; j > 0 && shares[j] < shares[j - 1]; j--) {
+            double swap = shares[j];
+            shares[j] = shares[j - 1];
+            shares[j - 1] = swap;
+        }
+    for (int i = 0; i < count; i++) {
+        double along = column + back * (1 - shares[i]), at = from + shares[i] * (across - from);
+        if (i == 0 || shares[i] > shares[i - 1] + 1e-9)
+            hull_look(hull, (float)((step - 1 + shares[i]) * (double)sweep->step_m),
+                      height_at(sweep, along, at));
+    }
+}
+
+/* One line, from its far end: gives its horizon to the samples on both sides. first: where it would
+ * cross column 0. */
+static void sweep_line(const struct sweep *sweep, double first, struct hull *hull)
+{
+    hull->count = 0;
+    for (int step = 0; step < sweep->along; step++) {
+        int column = sweep->ascending ? sweep->along - 1 - step : step;
+        double across = first + sweep->slope * column;
+        if (across <= -1 || across >= sweep->across)
+            continue;
+        if (hull->count)
+            look_between(sweep, column, across, hull, step);
+        float tangent =
+            hull_look(hull, (float)step * sweep->step_m, height_at(sweep, column, across));
+        double low = floor(across), share = across - low;
+        float *at = sweep->tangents + (size_t)column * sweep->stride_along;
+        if (low >= 0)
+            at[(size_t)low * sweep->stride_across] += (float)(1 - share) * tangent;
+        if (low + 1 < sweep->across && share > 0)
+            at[(size_t)(low + 1) * sweep->stride_across] += (float)share * tangent;
+    }
+}
+
+static void sweep_run(const struct sweep *sweep)
+{
+    struct arena *passing = arena_create(0);
+    struct hull hull = {.at_m = ARENA_ARRAY(passing, float, 4 * (size_t)sweep->along),
+                        .height_m = ARENA_ARRAY(passing, float, 4 * (size_t)sweep->along)};
+    double lean = sweep->slope * (sweep->along - 1);
+    for (double first = floor(fmin(0, -lean)) - 1; first <= sweep->across + fmax(0, -lean); first++)
+        sweep_line(sweep, first, &hull);
+    arena_destroy(passing);
+}
+
+void skyline_bake(struct arena *arena, const struct terrain *terrain, int azimuths, int threads,
+                  struct skyline *skyline)
+{
+    size_t samples = (size_t)terrain->samples_x * terrain->samples_z;
+    *skyline = (struct skyline){.samples_x = terrain->samples_x,
+                                .samples_z = terrain->samples_z,
+                                .azimuths = azimuths,
+                                .tangents = ARENA_ARRAY(arena, float, samples *(size_t)azimuths)};
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int k = 0; k < azimuths; k++) {
+        struct sweep sweep = sweep_of(terrain, 2 * M_PI * k / azimuths);
+        sweep.tangents = skyline->tangents + (size_t)k * samples;
+        sweep_run(&sweep);
+    }
+}
+
+/* Along x, z and the diagonals of the quads the surface bends, and nowhere else. */
+float skyline_exact(const struct terrain *terrain, uint32_t x, uint32_t z, double azimuth_rad)
+{
+    double gx = sin(azimuth_rad) * (terrain->samples_x - 1) / terrain->size_x_m;
+    double gz = cos(azimuth_rad) * (terrain->samples_z - 1) / terrain->size_z_m;
+    double rates[3] = {gx, gz, gx - gz}, best = SKYLINE_OPEN;
+    double from = terrain->heights_m[(size_t)z * terrain->samples_x + x];
+    for (int family = 0; family < 3; family++)
+        for (int k = 1; fabs(rates[family]) > 1e-12; k++) {
+            double distance = k / fabs(rates[family]);
+            double i = x + gx * distance, j = z + gz * distance;
+            if (i < -1e-6 || j < -1e-6 || i > terrain->samples_x - 1 + 1e-6 ||
+                j > terrain->samples_z - 1 + 1e-6)
+                break;
+            double at_x = (i / (terrain->samples_x - 1) - 0.5) * terrain->size_x_m;
+            double at_z = (j / (terrain->samples_z - 1) - 0.5) * terrain->size_z_m;
+            double height = (double)terrain_height(terrain, (float)at_x, (float)at_z);
+            best = fmax(best, (height - from) / distance);
+        }
+    return (float)best;
+}

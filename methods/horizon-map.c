@@ -1,0 +1,59 @@
+/* horizon-map: a relief under a moving sun, in the shadow of horizon maps that are made once (Max
+ * 1988, bake/skyline.h). Trees are no height field: they cast shadow volumes
+ * (bake/shadow_passes.h), and the relief casts nothing on them. */
+#include "bake/shadow_passes.h"
+#include "bake/shadow_trees.h"
+#include "bake/skyline.h"
+
+struct options {
+    int samples, azimuths, lookup;
+};
+
+/* clang-format off */
+static const struct option option_table[] = {
+    OPTION_WORD(struct options, samples, 0, "1|4|16",
+        "samples a pixel: 4 are multisampled, 16 too where the driver has them, else 4 in 2 x 2 texels"),
+    OPTION(struct options, azimuths, 64, 1, SKYLINE_AZIMUTHS_MOST, "",
+        "directions that the horizon is known in"),
+    OPTION_WORD(struct options, lookup, 0, "mixed|nearest",
+        "the horizon toward the sun from the two directions beside it, or the nearest one's, as published"),
+    OPTION_END,
+};
+/* clang-format on */
+
+static enum status prepare(struct workspace *workspace, const struct scene *scene,
+                           const void *values, void **state)
+{
+    static const int samples_of_word[] = {1, 4, 16};
+    const struct options *options = values;
+    struct shadow_passes *passes = NULL;
+    struct shadow_passes_request request = {
+        .samples = samples_of_word[options->samples],
+        .azimuths = options->azimuths,
+        .mixed = options->lookup == 0};
+    enum status status = shadow_passes_prepare(workspace, scene, &request, &passes);
+    *state = passes;
+    return status;
+}
+
+static enum status draw(struct workspace *workspace, void *state, const struct view *view,
+                        struct target *target)
+{
+    return shadow_passes_draw(workspace, state, view, target);
+}
+
+extern const struct method horizon_map_method;
+const struct method horizon_map_method = {
+    .abi = METHOD_ABI,
+    .name = "horizon-map",
+    .summary = "a relief in its own shadow by horizon maps that a moving sun leaves as they are",
+    .source = "Max, Horizon mapping: shadows for bump-mapped surfaces, 1988, doi:10.1007/BF01905562; "
+              "Stewart, Fast horizon computation at all points of a terrain with visibility and "
+              "shading applications, 1998, doi:10.1109/2945.675656",
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG,
+    .options = option_table,
+    .options_size = sizeof(struct options),
+    .supported = shadow_trees_supported,
+    .prepare = prepare,
+    .draw = draw,
+};
