@@ -50,7 +50,8 @@ const struct method horizon_map_method = {
     .source = "Max, Horizon mapping: shadows for bump-mapped surfaces, 1988, doi:10.1007/BF01905562; "
               "Stewart, Fast horizon computation at all points of a terrain with visibility and "
               "shading applications, 1998, doi:10.1109/2945.675656",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG |
+              TRAIT_MASK,
     .options = option_table,
     .options_size = sizeof(struct options),
     .supported = shadow_trees_supported,

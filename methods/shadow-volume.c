@@ -48,7 +48,8 @@ const struct method shadow_volume_method = {
     .source = "Crow, Shadow algorithms for computer graphics, 1977, doi:10.1145/965141.563901; "
               "Everitt, Kilgard, Practical and robust stenciled shadow volumes for "
               "hardware-accelerated rendering, 2002, arXiv:cs/0301002; Abderrahmani 2018, 5.1",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG |
+              TRAIT_MASK,
     .options = option_table,
     .options_size = sizeof(struct options),
     .supported = shadow_trees_supported,

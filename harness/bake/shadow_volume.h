@@ -27,7 +27,8 @@ struct shadow_volume;
 enum status shadow_volume_prepare(struct workspace *workspace, const struct scene *scene,
                                   const struct shadow_volume_request *request,
                                   struct shadow_volume **volume);
-/* The boundaries for a sun: nothing to do when it stands where it stood. */
+/* The boundaries for a sun: nothing to do when it stands where it stood. Made anew in draws that
+ * are counted, and tallied; counting them into the stencil is part of every frame. */
 void shadow_volume_extrude(struct workspace *workspace, struct shadow_volume *volume,
                            const float sun_direction[3]);
 /* The far plane is moved to infinity: what must be drawn with volumes, surfaces too. */

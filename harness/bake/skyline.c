@@ -108,26 +108,36 @@ static void look_between(const struct sweep *sweep, int column, double across, s
     }
 }
 
+/* Lines that should pass through samples do. */
+static double snap(double across)
+{
+    double whole = rint(across);
+    return fabs(across - whole) < 1e-6 ? whole : across;
+}
+
 /* One line, from its far end: gives its horizon to the samples on both sides. first: where it would
  * cross column 0. */
 static void sweep_line(const struct sweep *sweep, double first, struct hull *hull)
 {
+    const int last = sweep->across - 1;
     hull->count = 0;
     for (int step = 0; step < sweep->along; step++) {
         int column = sweep->ascending ? sweep->along - 1 - step : step;
-        double across = first + sweep->slope * column;
-        if (across <= -1 || across >= sweep->across)
+        double across = snap(first + sweep->slope * column);
+        if (across < 0 || across > last)
             continue;
         if (hull->count)
             look_between(sweep, column, across, hull, step);
         float tangent =
             hull_look(hull, (float)step * sweep->step_m, height_at(sweep, column, across));
-        double low = floor(across), share = across - low;
+        int low = (int)across;
+        double share = across - low;
         float *at = sweep->tangents + (size_t)column * sweep->stride_along;
-        if (low >= 0)
-            at[(size_t)low * sweep->stride_across] += (float)(1 - share) * tangent;
-        if (low + 1 < sweep->across && share > 0)
-            at[(size_t)(low + 1) * sweep->stride_across] += (float)share * tangent;
+        /* at a border there is no line on the other side */
+        at[(size_t)low * sweep->stride_across] += (float)(low > 0 ? 1 - share : 1) * tangent;
+        if (share > 0)
+            at[(size_t)(low + 1) * sweep->stride_across] +=
+                (float)(low + 1 < last ? share : 1) * tangent;
     }
 }
 
