@@ -1,13 +1,18 @@
-/* A bent terrain on the CPU: its triangles, chunk by chunk, over a tile. A triangle is met where a
+/* A bent terrain on the CPU: its triangles, chunk by chunk, over a tile, or of a large one a ray a
+ * pixel through its quadtree. A triangle is met where a
  * ray has the three planes through the eye and its edges on one side (Olano and Greer 1997,
  * "Triangle Scan Conversion using 2D Homogeneous Coordinates"): no clipping, and the same weights
  * give depth and normal. */
 #include "bake/backdrop_cpu_parts.h"
+#include "bake/terrain_rays.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { CHUNK_SIDE = 8 };
+
+/* Above, a ray a pixel through the quadtree is faster than a look at every chunk and triangle. */
+enum { TRIANGLES_DRAWN_MAX = 1 << 19 };
 
 /* On the screen, px, row 0 on top. */
 struct bounds {
@@ -15,6 +20,8 @@ struct bounds {
 };
 
 struct hills {
+    const struct terrain *terrain;
+    struct terrain_rays *rays; /* NULL: by what follows */
     const struct mesh *mesh;
     uint32_t quads_x, quads_z, chunks_x, chunks_z;
     float (*screen)[3]; /* of each vertex: x, y in px, depth along the view */
@@ -62,6 +69,12 @@ static void chunk_sphere(const struct hills *hills, size_t chunk, float sphere[4
 struct hills *hills_prepare(struct arena *arena, const struct terrain *terrain)
 {
     struct hills *hills = ARENA_NEW(arena, struct hills);
+    const uint64_t quads = (uint64_t)(terrain->samples_x - 1) * (terrain->samples_z - 1);
+    hills->terrain = terrain;
+    if (2 * quads > TRIANGLES_DRAWN_MAX) {
+        hills->rays = terrain_rays_create(arena, terrain);
+        return hills;
+    }
     hills->mesh = terrain_mesh(arena, terrain);
     hills->quads_x = terrain->samples_x - 1;
     hills->quads_z = terrain->samples_z - 1;
@@ -110,6 +123,8 @@ static struct bounds chunk_bounds(const struct hills *hills, size_t chunk, const
 
 void hills_begin(struct hills *hills, const struct view *view, int threads)
 {
+    if (hills->rays)
+        return;
     const float focal = 0.5f * (float)view->height_px / tanf(0.5f * view->fov_y_rad);
     const size_t vertices = hills->mesh->vertices_count;
     const size_t chunks = (size_t)hills->chunks_x * hills->chunks_z;
@@ -207,6 +222,29 @@ static float facet_light(const struct facet *facet, const float weights[3],
     return cosine;
 }
 
+/* A place of a facet as a pixel's nearest. */
+static void pixel_put(const struct facet *facet, const float weights[3], float depth_m,
+                      const struct backdrop_rays *rays, const struct backdrop_light *light,
+                      const struct backdrop_tile *tile, int x, int y)
+{
+    const int at = y * tile->stride + x;
+    float *rgb = tile->rgb[at];
+    tile->depths_m[at] = depth_m;
+    float sun = facet_light(facet, weights, light, rgb);
+    if (light->fog_density_per_m > 0) {
+        float square = 0;
+        for (int i = 0; i < 3; i++) {
+            float ray = rays->first[i] + (float)(tile->x_px + x) * rays->right[i] +
+                        (float)(tile->y_px + y) * rays->down[i];
+            square += ray * ray;
+        }
+        backdrop_fog(light, depth_m * sqrtf(square), rgb);
+        sun *= tile->suns ? backdrop_clear(light, depth_m * sqrtf(square)) : 0;
+    }
+    if (tile->suns)
+        tile->suns[at] = sun;
+}
+
 static void facet_draw(const struct facet *facet, const struct backdrop_rays *rays,
                        const struct backdrop_light *light, const struct backdrop_tile *tile,
                        const int low[2], const int high[2])
@@ -234,24 +272,36 @@ static void facet_draw(const struct facet *facet, const struct backdrop_rays *ra
             double depth = sign * facet->volume / sum;
             if (!(depth < depths_m[x]))
                 continue;
-            depths_m[x] = (float)depth;
-            float *rgb = tile->rgb[y * tile->stride + x];
             const float weights[3] = {(float)(a / sum), (float)(b / sum), (float)(c / sum)};
-            float sun = facet_light(facet, weights, light, rgb);
-            if (light->fog_density_per_m > 0) {
-                float square = 0;
-                for (int i = 0; i < 3; i++) {
-                    float ray = rays->first[i] + (float)(tile->x_px + x) * rays->right[i] +
-                                (float)(tile->y_px + y) * rays->down[i];
-                    square += ray * ray;
-                }
-                backdrop_fog(light, (float)depth * sqrtf(square), rgb);
-                sun *= tile->suns ? backdrop_clear(light, (float)depth * sqrtf(square)) : 0;
-            }
-            if (tile->suns)
-                tile->suns[y * tile->stride + x] = sun;
+            pixel_put(facet, weights, (float)depth, rays, light, tile, x, y);
         }
     }
+}
+
+/* By a ray a pixel. */
+static void rays_tile(const struct hills *hills, const struct backdrop_rays *rays,
+                      const float eye_m[3], const struct backdrop_light *light,
+                      const struct backdrop_tile *tile)
+{
+    const struct terrain *terrain = hills->terrain;
+    for (int y = 0; y < tile->height_px; y++)
+        for (int x = 0; x < tile->width_px; x++) {
+            struct terrain_hit hit;
+            struct facet facet;
+            float ray[3];
+            for (int i = 0; i < 3; i++)
+                ray[i] = rays->first[i] + (float)(tile->x_px + x) * rays->right[i] +
+                         (float)(tile->y_px + y) * rays->down[i];
+            if (!terrain_rays_hit(hills->rays, eye_m, ray,
+                                  (double)tile->depths_m[y * tile->stride + x], &hit))
+                continue;
+            facet.volume = hit.front ? -1 : 1;
+            for (int k = 0; k < 3; k++) {
+                facet.normals[k] = terrain->normals[hit.corners[k]];
+                facet.colors[k] = terrain->colors ? terrain->colors[hit.corners[k]] : NULL;
+            }
+            pixel_put(&facet, hit.weights, (float)hit.distance, rays, light, tile, x, y);
+        }
 }
 
 void hills_tile(const struct hills *hills, const struct backdrop_rays *rays, const float eye_m[3],
@@ -260,6 +310,10 @@ void hills_tile(const struct hills *hills, const struct backdrop_rays *rays, con
     const size_t chunks = (size_t)hills->chunks_x * hills->chunks_z;
     const struct mesh *mesh = hills->mesh;
     int low[2], high[2];
+    if (hills->rays) {
+        rays_tile(hills, rays, eye_m, light, tile);
+        return;
+    }
     for (size_t chunk = 0; chunk < chunks; chunk++) {
         if (!pixels_of(&hills->chunks[chunk], tile, low, high))
             continue;
