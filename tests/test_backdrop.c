@@ -11,7 +11,7 @@ static void make_terrain(struct arena *arena, struct scene *scene, uint32_t samp
 {
     struct terrain *terrain = &scene->terrain;
     *terrain =
-        (struct terrain){samples, samples, size_m, size_m, NULL, NULL, {0.4f, 0.3f, 0.2f}, NULL};
+        (struct terrain){samples, samples, size_m, size_m, NULL, NULL, {0.4f, 0.3f, 0.2f}, NULL, 0};
     terrain->heights_m = ARENA_ARRAY(arena, float, samples *samples);
     terrain->normals = arena_alloc(arena, samples * samples, sizeof *terrain->normals);
     for (uint32_t j = 0; j < samples; j++)

@@ -2,6 +2,7 @@
  * into square chunks that are culled one by one; the sky is a triangle behind everything, at pixel
  * centres. */
 #include "bake/backdrop.h"
+#include "bake/backdrop_levels.h"
 #include "bake/cull.h"
 #include "bake/horizon.h"
 #include "bake/shadow_map.h"
@@ -29,6 +30,7 @@ struct backdrop {
     bool mixed;
     size_t chunks_count;
     struct chunk *chunks;
+    struct backdrop_levels *levels; /* instead of the chunks; NULL: every triangle */
     struct horizon *horizon;
     const struct shadow_map *shadows; /* received; NULL: none */
     GLuint shadowed_program;
@@ -137,9 +139,11 @@ static enum status prepare_terrain(struct workspace *workspace, const struct sce
                                    struct backdrop *backdrop)
 {
     struct gl *gl = workspace->gl;
-    const struct mesh *mesh = terrain_mesh(workspace->arena, &scene->terrain);
-    if (!mesh)
+    if (scene->terrain.samples_x == 0)
         return STATUS_OK;
+    if (scene->terrain.detail_px > 0)
+        return backdrop_levels_prepare(workspace, scene, &backdrop->levels);
+    const struct mesh *mesh = terrain_mesh(workspace->arena, &scene->terrain);
     uint32_t *indices = ARENA_ARRAY(workspace->arena, uint32_t, 3 * mesh->triangles_count);
     size_t filled = fill_chunks(workspace->arena, mesh, &scene->terrain, backdrop, indices);
     if (filled != 3 * mesh->triangles_count)
@@ -180,12 +184,24 @@ enum status backdrop_prepare(struct workspace *workspace, const struct scene *sc
     return status == STATUS_OK ? gl_check(gl, "backdrop", workspace->error) : status;
 }
 
+/* What shadows are kept for the grid's own vertices needs all of them to be drawn. */
+static enum status need_all_drawn(struct workspace *workspace, const struct backdrop *backdrop)
+{
+    if (!backdrop->levels)
+        return STATUS_OK;
+    return error_set(workspace->error, STATUS_UNSUPPORTED,
+                     "terrain.detail_px: %g; allowed by shadow maps and horizon maps: 0 (every "
+                     "triangle is drawn)",
+                     (double)backdrop->scene->terrain.detail_px);
+}
+
 enum status backdrop_receive(struct workspace *workspace, struct backdrop *backdrop,
                              const struct shadow_map *map)
 {
+    enum status status = need_all_drawn(workspace, backdrop);
     backdrop->shadows = map;
     if (backdrop->chunks_count == 0)
-        return STATUS_OK;
+        return status;
     return shadow_map_program(workspace, map, "shadowed terrain", backdrop_glsl,
                               terrain_defines(workspace, backdrop->scene),
                               &backdrop->shadowed_program);
@@ -208,8 +224,9 @@ enum status backdrop_skyline(struct workspace *workspace, struct backdrop *backd
                              const struct skyline *skyline, bool mixed)
 {
     struct gl *gl = workspace->gl;
+    enum status status = need_all_drawn(workspace, backdrop);
     if (!backdrop->chunks_count)
-        return STATUS_OK;
+        return status;
     backdrop->azimuths = skyline->azimuths;
     backdrop->mixed = mixed;
     backdrop->skylines = gl_texture(gl, GL_TEXTURE_2D_ARRAY, 1, GL_R32F, (int)skyline->samples_x,
@@ -266,31 +283,41 @@ static void smooth_uniforms(struct workspace *workspace, GLuint program, const s
     gl->Uniform3fv(gl_uniform(gl, program, "in_shade"), 1, in_shade);
 }
 
+/* Light may be interpolated only where nothing but the surface's own slope dims it. */
+static GLuint terrain_program_of(const struct workspace *workspace, const struct backdrop *backdrop,
+                                 bool above)
+{
+    if (backdrop->skyline_program)
+        return backdrop->skyline_program;
+    if (backdrop->shadows)
+        return backdrop->shadowed_program;
+    bool smooth = above && backdrop->smooth_program && !workspace->masked;
+    return smooth ? backdrop->smooth_program : backdrop->terrain_program;
+}
+
 static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
                          const struct view *view)
 {
     struct gl *gl = workspace->gl;
     const struct scene *scene = backdrop->scene;
-    if (backdrop->chunks_count == 0)
+    if (backdrop->chunks_count == 0 && !backdrop->levels)
         return;
     bool above = eye_is_above(&scene->terrain, view->eye_m);
-    bool mapped = backdrop->skyline_program != 0;
-    bool smooth =
-        above && backdrop->smooth_program && !workspace->masked && !mapped && !backdrop->shadows;
-    GLuint program = smooth              ? backdrop->smooth_program
-                     : mapped            ? backdrop->skyline_program
-                     : backdrop->shadows ? backdrop->shadowed_program
-                                         : backdrop->terrain_program;
+    if (backdrop->levels) {
+        backdrop_levels_draw(workspace, backdrop->levels, view, above);
+        return;
+    }
+    GLuint program = terrain_program_of(workspace, backdrop, above);
     gl->UseProgram(program);
     gl->BindVertexArray(backdrop->terrain_vertices);
     shade_uniforms(workspace, program, scene, view);
     if (backdrop->shadows)
         shadow_map_uniforms(workspace, backdrop->shadows, program);
-    if (smooth)
+    if (program == backdrop->smooth_program)
         smooth_uniforms(workspace, program, scene);
     else
         gl->Uniform3fv(gl_uniform(gl, program, "albedo"), 1, scene->terrain.albedo);
-    if (mapped)
+    if (program == backdrop->skyline_program)
         skyline_uniforms(gl, backdrop, view);
     if (above)
         gl->Enable(GL_CULL_FACE);

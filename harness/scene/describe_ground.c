@@ -64,6 +64,7 @@ void describe_ground(struct arena *arena, struct json *root, struct description 
     if (ground->noise.samples[0] && (ground->image || ground->level))
         json_fail(terrain, "perlin", "stands beside %s; allowed: one of them",
                   ground->image ? "an image" : "a relief");
+    ground->detail_px = (float)json_number(terrain, "detail_px", -1, 0, 16);
     ground->color = describe_path(arena, description->path, json_text(terrain, "color", NULL));
     float albedo[3] = {0.06f, 0.08f, 0.032f}, white[3] = {1, 1, 1};
     memcpy(ground->albedo, ground->color ? white : albedo, sizeof albedo);

@@ -55,7 +55,7 @@ struct ground {
     struct relief_noise noise; /* samples 0: none */
     const char *color;         /* path; NULL: albedo everywhere */
     float albedo[3];
-    float detail_px; /* of levels of detail: how far they may move a picture; 0: every triangle */
+    float detail_px; /* as of struct terrain; below 0: by the number of triangles */
 };
 
 struct description {

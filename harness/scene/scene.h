@@ -42,6 +42,8 @@ struct terrain {
     float (*normals)[3]; /* samples_z x samples_x, unit, central differences on both axes */
     float albedo[3];
     float (*colors)[3]; /* samples_z x samples_x, linear; times albedo. NULL: 1 everywhere */
+    float
+        detail_px; /* how far OpenGL's backdrop may move the surface in a picture; 0: not at all */
 };
 
 struct sun {

@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+/* Up to so many, a terrain has no levels of detail unless the scene asks for them. */
+enum { TRIANGLES_ALL_DRAWN = 1 << 21 };
+
 /* Heights of an image, m. */
 static enum status heights_read(struct arena *arena, const struct description *description,
                                 struct terrain *terrain, struct error *error)
@@ -78,6 +81,9 @@ enum status terrain_build(struct arena *arena, const struct description *descrip
     terrain->size_z_m = (float)ground->size_m[1];
     memcpy(terrain->albedo, ground->albedo, sizeof terrain->albedo);
     enum status status = heights_make(arena, description, terrain, error);
+    const uint64_t triangles = (uint64_t)(terrain->samples_x - 1) * (terrain->samples_z - 1) * 2;
+    const float usual_px = triangles > TRIANGLES_ALL_DRAWN ? 0.5f : 0;
+    terrain->detail_px = ground->detail_px < 0 ? usual_px : ground->detail_px;
     if (status == STATUS_OK && ground->color)
         status = colors_read(arena, description, terrain, error);
     if (status == STATUS_OK)
