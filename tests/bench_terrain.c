@@ -1,12 +1,11 @@
-/* What levels of detail and the quadtree are worth on a fractal relief of 2^level quads a pair of
- * axes: frames of `null` by OpenGL with every triangle and at three bounds, and of the CPU's
- * backdrop.
+/* What levels of detail and the quadtree are worth on Perlin's noise, 40 km a side: frames of
+ * `null` by OpenGL with every triangle and at three bounds, and of the CPU's backdrop.
  *
- *     bench_terrain [level [rounds [all]]]      16 7 1
+ *     bench_terrain [level [rounds [ways]]]      8 7 all
  *
- * level: of relief_heights(), 26 is 8193 x 8193 samples; all 0: no frame of every triangle. A line
- * a way of drawing: seconds to prepare, median seconds a frame over the rounds, triangles, and what
- * the picture differs from the first line's. Ways take turns. */
+ * level: 2^level quads a side, in as many octaves; ways: all, levels (not every triangle), cpu. A
+ * line a way of drawing: seconds to prepare, median seconds a frame over the rounds, triangles, and
+ * what the picture differs from the first line's. One way after the other. */
 #include "bake/backdrop_cpu.h"
 #include "base/clock.h"
 #include "pictures.h"
@@ -22,10 +21,11 @@ static struct scene *bench_scene(struct arena *arena, int level)
 {
     struct scene *scene = scene_by_hand(arena, WIDTH, HEIGHT);
     struct terrain *terrain = &scene->terrain;
-    uint32_t samples[2];
-    terrain->heights_m = relief_heights(arena, level, 2500, 4, samples);
-    terrain->samples_x = samples[0];
-    terrain->samples_z = samples[1];
+    const uint32_t side = (1u << level) + 1;
+    const double size_m[2] = {40000, 40000};
+    const struct relief_noise noise = {{side, side}, 1500, 12000, level, 0.45, 4};
+    terrain->heights_m = relief_perlin(arena, &noise, size_m);
+    terrain->samples_x = terrain->samples_z = side;
     terrain->size_x_m = terrain->size_z_m = 40000;
     for (int i = 0; i < 3; i++)
         terrain->albedo[i] = 0.3f;
@@ -167,15 +167,16 @@ static void bench_cpu(struct scene *scene, int rounds)
 
 int main(int count, char **arguments)
 {
-    int level = count > 1 ? atoi(arguments[1]) : 16;
+    int level = count > 1 ? atoi(arguments[1]) : 8;
     int rounds = count > 2 ? atoi(arguments[2]) : 7;
-    bool all = count > 3 ? atoi(arguments[3]) != 0 : true;
+    const char *ways = count > 3 ? arguments[3] : "all";
     rounds = rounds < 1 ? 1 : rounds > ROUNDS_MAX ? ROUNDS_MAX : rounds;
     struct arena *arena = arena_create(0);
     struct scene *scene = bench_scene(arena, level);
     printf("%u x %u samples\n", scene->terrain.samples_x, scene->terrain.samples_z);
     bench_cpu(scene, rounds);
-    bench_gl(scene, rounds, all);
+    if (strcmp(ways, "cpu") != 0)
+        bench_gl(scene, rounds, strcmp(ways, "all") == 0);
     arena_destroy(arena);
     return 0;
 }

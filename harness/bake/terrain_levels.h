@@ -8,7 +8,7 @@
 
 #include "scene/scene.h"
 
-enum { LEVELS_CHUNK = 64, LEVELS_COUNT = 7 }; /* quads a side; strides 1 to 64 */
+enum { LEVELS_CHUNK = 32, LEVELS_COUNT = 6 }; /* quads a side; strides 1 to 32 */
 
 struct terrain_levels;
 
