@@ -19,16 +19,26 @@ struct cover {
     size_t stencil_count, hits_count;
 };
 
+static inline float least(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float most(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 /* Returns how many samples were not yet marked. */
 static size_t mark_triangle(uint8_t *hits, const float corners[3][2])
 {
     int begin[2], end[2];
     for (int axis = 0; axis < 2; axis++) {
-        float low = fminf(fminf(corners[0][axis], corners[1][axis]), corners[2][axis]);
-        float high = fmaxf(fmaxf(corners[0][axis], corners[1][axis]), corners[2][axis]);
-        low = fminf(fmaxf(low, 0), SIDE);
+        float low = least(least(corners[0][axis], corners[1][axis]), corners[2][axis]);
+        float high = most(most(corners[0][axis], corners[1][axis]), corners[2][axis]);
+        low = least(most(low, 0), SIDE);
         begin[axis] = (int)low + (low > (float)(int)low); /* above 0 a cast rounds down */
-        end[axis] = (int)(fminf(fmaxf(high, -1), SIDE - 1) + 1);
+        end[axis] = (int)(least(most(high, -1), SIDE - 1) + 1);
         if (begin[axis] >= end[axis])
             return 0;
     }
@@ -49,16 +59,6 @@ static size_t mark_triangle(uint8_t *hits, const float corners[3][2])
             hits[y * SIDE + x] |= inside;
         }
     return count;
-}
-
-static inline float least(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-static inline float most(float a, float b)
-{
-    return a > b ? a : b;
 }
 
 /* Whether whole numbers of 0..SIDE-1 lie between the least and the most of three. */
