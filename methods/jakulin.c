@@ -17,7 +17,7 @@ struct options {
 static const struct option table[] = {
     OPTION(struct options, directions, 4, 2, 8, "", "vertical directions that slices are made along"),
     OPTION_WORD(struct options, above, 1, "none|stack",
-                "stack: horizontal slices, too, whose share grows with the view's elevation; none: as published"),
+                "stack: horizontal slices take over as the view rises above 30 degrees; none: as published"),
     OPTION(struct options, slices, 8, 1, 32, "", "slices along each of them"),
     OPTION(struct options, resolution, 256, 8, 512, "px", "texels along a picture's longer side"),
     OPTION_WORD(struct options, order, 0, "mixed|exact",

@@ -18,6 +18,7 @@ flat out float rise;
 #endif
 #ifdef FACING
 flat out vec3 to_eye, toward;
+flat out vec2 slant;
 #endif
 #if defined(OBLIQUE) && !defined(FACING)
 flat out float oblique;
@@ -73,6 +74,7 @@ void main()
 #ifdef FACING
     to_eye = t.eye.xyz;
     toward = t.toward_array.xyz;
+    slant = vec2(0.8 * (dot(to_eye, to_eye) - 1.0), length(to_eye));
 #endif
 #if defined(OBLIQUE) && !defined(FACING)
     oblique = min(length(t.eye.xyz) - 1.0, 1.0);
@@ -90,6 +92,7 @@ flat in float rise;  // of normals: 1 / stretch
 #endif
 #ifdef FACING
 flat in vec3 to_eye, toward;
+flat in vec2 slant;  // of to_eye: 0.8 times the square of its part across toward; its length, 1 / cosine
 #endif
 #if defined(OBLIQUE) && !defined(FACING)
 flat in float oblique;  // 1 / cosine - 1
@@ -170,9 +173,9 @@ float facing_of(vec4 n)
 {
     float to_front = dot(n.xyz, toward), turned = dot(n.xyz, to_eye);
 #ifdef OBLIQUE
-    float square = dot(to_eye, to_eye), scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0);
-    float area = sqrt((turned * turned + 0.8 * scatter * (square - 1.0) + 0.01) / (to_front * to_front + 0.01));
-    return mix(sqrt(square), min(area, 3.0), n.w);
+    float scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0);
+    float area = sqrt((turned * turned + scatter * slant.x + 0.01) / (to_front * to_front + 0.01));
+    return mix(slant.y, min(area, 3.0), n.w);
 #else
     float scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0) / 4.5 + 0.01;
     float area = sqrt((turned * turned + scatter * dot(to_eye, to_eye)) / (to_front * to_front + scatter));

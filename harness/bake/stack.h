@@ -53,8 +53,8 @@ struct stack_request {
     float distant_px;       /* at lod=auto, where the largest tree is smaller, trees are pictures
                                drawn by the CPU; 0: none is. Not on GROUND_BASE and GROUND_PATCH */
     enum stack_mix mix;
-    bool above; /* mixed, crossed: the last direction is +y, its stack's share of a tree the eye's
-                   elevation over a right angle */
+    bool above; /* mixed, crossed: the last direction is +y, its stack's share of a tree grows from
+                   an elevation of the eye of 30 degrees to 1 at 90 */
 };
 
 /* Steps of a tree's stretch that light is baked for, as those of turns: a quarter of an octave,

@@ -180,6 +180,14 @@ static float mixed_share(const struct seen best[2])
     return between > 0 ? fminf(fmaxf(angle / between, 0), 0.5f) : 0;
 }
 
+/* The share of the horizontal side: vertical ones alone show a tree as well up to 30 degrees above
+ * it (an oak's coverage, pixel by pixel: off by .20 with it and without), and cost less. */
+static float share_above(float sine)
+{
+    const float begin_rad = (float)M_PI / 6;
+    return fmaxf(0, (asinf(fminf(sine, 1)) - begin_rad) / ((float)M_PI_2 - begin_rad));
+}
+
 int stack_parts(const struct stack *stack, const struct view *view, enum lod lod,
                 const struct instance *instance, struct stack_part *parts)
 {
@@ -200,7 +208,7 @@ int stack_parts(const struct stack *stack, const struct view *view, enum lod lod
     if (stack->request.above) {
         const struct stack_side *above = plant->sides + stack->request.bake.directions_count - 1;
         best[2] = see(above, eye, forward, instance->stretch, plant->bound.radius_m);
-        shares[2] = asinf(fminf(best[2].cosine, 1)) / (float)M_PI_2;
+        shares[2] = share_above(best[2].cosine);
     }
     shares[1] *= 1 - shares[2];
     shares[0] -= shares[1] + shares[2];
