@@ -24,7 +24,7 @@ static const struct option table[] = {
            "of densities; 0: each tree whole, the nearer first"),
     OPTION(struct options, far, 4, 0, 8, "px",
            "trees of so large a radius are drawn from small pictures of the plants from far away, "
-           "larger ones marched; not with slabs or shadows"),
+           "larger ones marched; not with slabs"),
     OPTION(struct options, shadows, 64, 0, 512, "",
            "cells of the sun's shadows along a plant's longest extent; 0: the sun casts none"),
     OPTION(struct options, tile, 32, 8, 64, "px", "side of the tiles that trees are binned to"),

@@ -50,14 +50,14 @@ struct drawn {
     uint64_t lookups;
 };
 
-static struct drawn draw_far(struct world *world, bool cells, float far_px, const char *isa,
-                             int threads)
+static struct drawn draw_lit(struct world *world, bool cells, float far_px, const char *isa,
+                             int threads, unsigned lit)
 {
     const int width_px = world->view.width_px, height_px = world->view.height_px;
     struct error error = {0};
     struct workspace workspace = {.arena = world->arena,
                                   .error = &error,
-                                  .effects = EFFECT_TWO_SIDED | EFFECT_AMBIENT,
+                                  .effects = EFFECT_TWO_SIDED | EFFECT_AMBIENT | lit,
                                   .threads = threads};
     const struct march_options options = {.resolution = 32,
                                           .stop = 0.02f,
@@ -65,6 +65,7 @@ static struct drawn draw_far(struct world *world, bool cells, float far_px, cons
                                           .tile_px = 16,
                                           .far_px = far_px,
                                           .cells = cells,
+                                          .shadow_resolution = 32,
                                           .isa = isa};
     struct march *march;
     struct frame *frame = frame_create(world->arena, width_px, height_px, false);
@@ -74,6 +75,12 @@ static struct drawn draw_far(struct world *world, bool cells, float far_px, cons
         march_draw(&workspace, march, &world->view, &target))
         fail_msg("%s", error.text);
     return (struct drawn){frame->rgba, workspace.tally.lookups};
+}
+
+static struct drawn draw_far(struct world *world, bool cells, float far_px, const char *isa,
+                             int threads)
+{
+    return draw_lit(world, cells, far_px, isa, threads, 0);
 }
 
 static struct drawn draw(struct world *world, bool cells, const char *isa, int threads)
@@ -245,6 +252,32 @@ test_march_cells__trees_of_a_few_pixels_show_the_mean_of_what_is_in_a_pixel(void
     arena_destroy(large.arena);
 }
 
+/* The share of the light from trees that is left by the shadows that they cast; the ground is
+ * black. A far picture takes one mean over a tree, so within half of what other trees take (.16).
+ */
+static void test_march_cells__trees_of_a_few_pixels_are_as_dark_in_shadow_as_marched(void **state)
+{
+    (void)state;
+    double left[2];
+    struct world world = world_of_nine(96, 80);
+    for (int c = 0; c < 3; c++)
+        world.scene.terrain.albedo[c] = world.scene.ambient[c] = 0;
+    world_sun(&world, 0.9, 0.15, 0.1);
+    for (int far = 0; far < 2; far++) {
+        double light[2] = {0};
+        for (int shadows = 0; shadows < 2; shadows++) {
+            const struct drawn drawn =
+                draw_lit(&world, true, far ? 8 : 0, NULL, 2, shadows ? EFFECT_SUN_SHADOWS : 0);
+            for (int i = 0; i < 96 * 80; i++)
+                light[shadows] += drawn.rgba[4 * i + 3] > 0 ? drawn.rgba[4 * i] : 0;
+        }
+        left[far] = light[1] / light[0];
+    }
+    if (!(left[0] < 0.9 && fabs(left[1] - left[0]) < 0.08))
+        fail_msg("%g of the light left in far pictures, %g marched", left[1], left[0]);
+    arena_destroy(world.arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +287,7 @@ int main(void)
         cmocka_unit_test(
             test_march_cells__trees_of_a_few_pixels_show_the_mean_of_what_is_in_a_pixel),
         cmocka_unit_test(test_march_cells__hidden_trees_and_trees_outside_cost_no_lookup),
+        cmocka_unit_test(test_march_cells__trees_of_a_few_pixels_are_as_dark_in_shadow_as_marched),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

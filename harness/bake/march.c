@@ -68,8 +68,7 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
     struct march *march = *result = ARENA_NEW(workspace->arena, struct march);
     march->scene = scene;
     march->options = *options;
-    bool whole = options->slab > 0 || workspace->effects & EFFECT_SUN_SHADOWS;
-    march->options.far_px = whole ? 0 : options->far_px;
+    march->options.far_px = options->slab > 0 ? 0 : options->far_px;
     march->block = block_named(options->isa);
     enum status status = backdrop_cpu_prepare(workspace, scene, &march->backdrop);
     march->species = ARENA_ARRAY(workspace->arena, struct march_species, scene->species_count);
@@ -261,6 +260,8 @@ static void entry_splat(const struct march *march, const struct march_view *pict
         const struct march_tree *tree = &march->trees[entry];
         march_middle(picture, tree, middle);
         far = march_fars_at(march->fars, picture->view, tree->species, tree->turn, middle);
+        if (picture->shadows)
+            far_darken(&far, march_shadows_of_tree(picture->shadows, entry));
         if (is_sprite) {
             const struct march_far *its;
             const struct march_sprite *sprite = march_fars_sprite(
@@ -268,8 +269,6 @@ static void entry_splat(const struct march *march, const struct march_view *pict
             canvas_sprite(canvas, picture, tree, sprite, its, &far, share);
             return;
         }
-        if (picture->shadows)
-            far_darken(&far, march_shadows_of_tree(picture->shadows, entry));
         march_splat_of(picture, tree, &far, &splat);
     }
     splat.share = share;

@@ -27,7 +27,7 @@ struct march_options {
     float slab;            /* voxels; 0: trees are drawn whole */
     int tile_px;           /* side of a tile */
     float far_px;          /* trees of so large a radius, px, are drawn from a far picture; none
-                              with slab > 0 or shadows */
+                              with slab > 0 */
     bool cells;            /* trees below a pixel are drawn by cells of many */
     int shadow_resolution; /* cells of sun shadows along a plant's longest extent, 1 or more where
                               the scene wants them */
