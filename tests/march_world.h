@@ -62,8 +62,10 @@ static inline struct frame *ready_picture(struct world *world, struct ready *rea
 {
     struct frame *frame =
         frame_create(world->arena, world->view.width_px, world->view.height_px, false);
-    struct target target = {frame->width_px, frame->height_px, TARGET_RGBA32F, 0, 0, 0,
-                            frame->rgba};
+    struct target target = {.width_px = frame->width_px,
+                            .height_px = frame->height_px,
+                            .format = TARGET_RGBA32F,
+                            .pixels = frame->rgba};
     if (march_draw(&ready->workspace, ready->march, &world->view, &target))
         fail_msg("%s", ready->error.text);
     return frame;

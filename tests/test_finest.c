@@ -114,7 +114,10 @@ static struct frame *marched(struct arena *arena, const char *options, const str
         .arena = arena, .error = &error, .effects = lit, .lod = LOD_HIGH, .threads = 2};
     void *values = arena_alloc(arena, 1, method->options_size), *made;
     struct frame *frame = frame_create(arena, view->width_px, view->height_px, false);
-    struct target target = {view->width_px, view->height_px, TARGET_RGBA32F, 0, 0, 0, frame->rgba};
+    struct target target = {.width_px = view->width_px,
+                            .height_px = view->height_px,
+                            .format = TARGET_RGBA32F,
+                            .pixels = frame->rgba};
     options_default(method->options, values);
     if (options_parse(method->options, options, values, &error) ||
         method->prepare(&workspace, scene, values, &made) ||

@@ -69,7 +69,10 @@ static struct drawn draw_lit(struct world *world, bool cells, float far_px, cons
                                           .isa = isa};
     struct march *march;
     struct frame *frame = frame_create(world->arena, width_px, height_px, false);
-    struct target target = {width_px, height_px, TARGET_RGBA32F, 0, 0, 0, frame->rgba};
+    struct target target = {.width_px = width_px,
+                            .height_px = height_px,
+                            .format = TARGET_RGBA32F,
+                            .pixels = frame->rgba};
     setenv("TREELINE_CACHE", "off", 1);
     if (march_prepare(&workspace, &world->scene, &options, &march) ||
         march_draw(&workspace, march, &world->view, &target))

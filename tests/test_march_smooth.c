@@ -67,7 +67,8 @@ static struct frame *march_drawn(struct world *world, struct workspace *workspac
                                  struct march *march)
 {
     struct frame *frame = frame_create(world->arena, WIDTH, HEIGHT, false);
-    struct target target = {WIDTH, HEIGHT, TARGET_RGBA32F, 0, 0, 0, frame->rgba};
+    struct target target = {
+        .width_px = WIDTH, .height_px = HEIGHT, .format = TARGET_RGBA32F, .pixels = frame->rgba};
     assert_int_equal(march_draw(workspace, march, &world->view, &target), STATUS_OK);
     return frame;
 }
