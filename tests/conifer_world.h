@@ -59,8 +59,10 @@ static inline struct frame *drawn(struct world *world, const struct cones_option
         .arena = world->arena, .error = &error, .effects = effects, .threads = threads};
     struct frame *frame =
         frame_create(world->arena, world->view.width_px, world->view.height_px, false);
-    struct target target = {frame->width_px, frame->height_px, TARGET_RGBA32F, 0, 0, 0,
-                            frame->rgba};
+    struct target target = {.width_px = frame->width_px,
+                            .height_px = frame->height_px,
+                            .format = TARGET_RGBA32F,
+                            .pixels = frame->rgba};
     struct cones *cones;
     if (cones_prepare(&workspace, &world->scene, options, &cones) ||
         cones_draw(&workspace, cones, &world->view, &target))
