@@ -368,7 +368,7 @@ static void test_reference__bad_requests_are_refused_by_name(void **state)
                    "standard_error: nan");
     expect_refusal(&world, (struct reference_options){.standard_error = -1}, "standard_error: -1");
     expect_refusal(&world, (struct reference_options){.effects = 1u << 9},
-                   "effects: 0x200 is outside 0..0x1f");
+                   "effects: 0x200 is outside 0..0x3f");
     expect_refusal(&world, (struct reference_options){.threads = -2}, "threads: -2 is outside");
     world.scene.instances[0].species = 9;
     expect_refusal(&world, grove_options(4, 1), "instance 0: species 9 is outside 0..0");

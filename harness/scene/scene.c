@@ -283,16 +283,20 @@ static int is_scene(const struct dirent *entry)
            strcmp(entry->d_name + length - 5, ".json") == 0;
 }
 
-static int by_bytes(const struct dirent **a, const struct dirent **b)
+/* Of the names without ".json": "pines" stands before "pines-walk". */
+static int by_name(const struct dirent **a, const struct dirent **b)
 {
-    return strcmp((*a)->d_name, (*b)->d_name);
+    size_t lengths[2] = {strlen((*a)->d_name) - 5, strlen((*b)->d_name) - 5};
+    size_t both = lengths[0] < lengths[1] ? lengths[0] : lengths[1];
+    int order = memcmp((*a)->d_name, (*b)->d_name, both);
+    return order ? order : (lengths[0] > lengths[1]) - (lengths[0] < lengths[1]);
 }
 
 enum status scene_names(struct arena *arena, char ***names, size_t *count, struct error *error)
 {
     const char *folder = arena_printf(arena, "%s/scenes", data_folder());
     struct dirent **entries = NULL;
-    int found = scandir(folder, &entries, is_scene, by_bytes);
+    int found = scandir(folder, &entries, is_scene, by_name);
     if (found < 0)
         return error_errno(error, STATUS_NOT_FOUND, "%s", folder);
     *count = (size_t)found;
