@@ -55,7 +55,7 @@ enum status shadow_trees_supported(const struct scene *scene, const char **reaso
         triangles += (double)mesh->triangles_count;
         if (triangles <= SHADOW_TREES_ROOM)
             continue;
-        *reason = "its trees have more than 8388608 triangles together";
+        *reason = "its trees have more than 2097152 triangles together";
         return STATUS_UNSUPPORTED;
     }
     return STATUS_OK;

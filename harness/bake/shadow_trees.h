@@ -6,7 +6,7 @@
 #include "method/method.h"
 
 /* Triangles of all trees together that fit. */
-#define SHADOW_TREES_ROOM (1u << 23)
+#define SHADOW_TREES_ROOM (1u << 21)
 
 struct shadow_trees;
 
