@@ -99,14 +99,14 @@ static void test_levels__move_no_point_of_the_surface_farther_than_the_bound(voi
     struct random random = random_seed(5, 5);
     size_t fewest = SIZE_MAX;
     double closest = 0;
-    for (int n = 0; n < 12; n++) {
+    for (int n = 0; n < 6; n++) {
         struct view view;
         random_view(scene, &random, &view);
         float bound_px = (float[3]){1, 4, 12}[n % 3];
         const uint32_t *indices;
         size_t count = terrain_levels_view(levels, &view, bound_px, &indices);
         fewest = count < fewest ? count : fewest;
-        int points = (int)(90000 / (count + 1)) + 1;
+        int points = (int)(45000 / (count + 1)) + 1;
         for (size_t k = 0; k < count; k += 3) {
             double moved = moved_px(&scene->terrain, &view, indices + k, &random, points);
             if (moved > (double)bound_px * 1.001 + 0.01)
@@ -145,7 +145,7 @@ static void test_levels__tile_the_terrain_and_share_every_edge(void **state)
     struct terrain *terrain = &scene->terrain;
     scene->camera.far_m = 5000;
     struct terrain_levels *levels = terrain_levels_create(arena, terrain, 2);
-    for (int n = 0; n < 6; n++) {
+    for (int n = 1; n < 6; n += 2) {
         struct view view;
         float eye[3] = {(float)(n * 250 - 900), 20.0f * (float)(1 << n) * (float)(n + 1) / 2,
                         (float)(n * 90 - 400)};
@@ -228,7 +228,7 @@ static void test_levels__let_no_background_through_and_look_like_the_full_surfac
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    struct scene *scene = scene_by_hand(arena, 160, 120);
+    struct scene *scene = scene_by_hand(arena, 128, 96);
     make_rough(arena, &scene->terrain);
     paint(arena, &scene->terrain);
     scene->fog.density_per_m = 0.0005f;
@@ -236,7 +236,7 @@ static void test_levels__let_no_background_through_and_look_like_the_full_surfac
     for (int c = 0; c < 3; c++)
         scene->sky.zenith[c] = scene->sky.horizon[c] = scene->sky.ground[c] = c == 0 ? 9.0f : 0;
     struct random random = random_seed(9, 9);
-    for (int n = 0; n < 5; n++) {
+    for (int n = 1; n < 5; n += n) { /* 1, 2, 4 */
         struct view view;
         random_view(scene, &random, &view);
         if (n == 4) /* from below */
@@ -246,16 +246,16 @@ static void test_levels__let_no_background_through_and_look_like_the_full_surfac
         struct picture levels = draw_null(arena, scene, &view, bound_px);
         size_t covered = 0;
         double square = 0;
-        for (int y = 0; y < 120; y++)
-            for (int x = 0; x < 160; x++) {
+        for (int y = 0; y < 96; y++)
+            for (int x = 0; x < 128; x++) {
                 if (sky_within(&full, x, y, (int)bound_px + 1))
                     continue;
                 if (is_sky(&levels, x, y))
                     fail_msg("view %d: background at pixel (%d, %d)", n, x, y);
                 covered++;
                 for (int c = 0; c < 3; c++) {
-                    double away = (double)(levels.rgba[4 * (y * 160 + x) + c] -
-                                           full.rgba[4 * (y * 160 + x) + c]);
+                    double away = (double)(levels.rgba[4 * (y * 128 + x) + c] -
+                                           full.rgba[4 * (y * 128 + x) + c]);
                     square += away * away / 3;
                 }
             }

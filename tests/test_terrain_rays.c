@@ -2,6 +2,7 @@
  * rays through edges and vertices; limits. */
 #include "pictures.h"
 
+#include "bake/backdrop_cpu_parts.h"
 #include "bake/terrain_rays.h"
 #include "base/random.h"
 #include "scene/relief.h"
@@ -244,12 +245,72 @@ static void test_rays__end_where_they_are_told_and_of_two_samples_there_is_a_pla
     arena_destroy(arena);
 }
 
+enum { TILE = 48 };
+
+static void draw_tile(const struct hills *hills, const struct view *view,
+                      const struct backdrop_light *light, float *depths_m, float (*rgb)[3],
+                      float *suns)
+{
+    const struct backdrop_rays rays = backdrop_rays_of(view);
+    const struct backdrop_tile tile = {0, 0, TILE, TILE, TILE, depths_m, rgb, suns};
+    for (int k = 0; k < TILE * TILE; k++) {
+        depths_m[k] = INFINITY;
+        suns[k] = rgb[k][0] = rgb[k][1] = rgb[k][2] = -1;
+    }
+    hills_tile(hills, &rays, view->eye_m, light, &tile);
+}
+
+/* From above, from below and from outside, with fog and colours: but for pixels on an edge both
+ * ways of drawing give depth, radiance and the sun's part alike. */
+static void test_rays__draw_the_hills_that_the_triangles_draw(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct scene *scene = scene_by_hand(arena, TILE, TILE);
+    struct terrain *terrain = &scene->terrain;
+    *terrain = make_rough(arena);
+    terrain->colors = arena_alloc(arena, (SIDE_X + 1) * (SIDE_Z + 1), sizeof *terrain->colors);
+    for (size_t k = 0; k < (SIDE_X + 1) * (SIDE_Z + 1); k++)
+        for (size_t c = 0; c < 3; c++)
+            terrain->colors[k][c] = (float)((7 * k + 31 * c) % 97) / 96;
+    struct hills *ways[2] = {hills_prepare(arena, terrain, false),
+                             hills_prepare(arena, terrain, true)};
+    struct backdrop_light light = {
+        {0.6f, 0.64f, 0.48f}, {1, 2, 3}, {0.1f, 0.2f, 0.3f}, {0.5f, 0.6f, 0.7f}, 0.005f};
+    static const float eyes[3][3] = {{20, 40, 30}, {5, -60, 0}, {250, 60, -190}};
+    static float depths_m[2][TILE * TILE], rgb[2][TILE * TILE][3], suns[2][TILE * TILE];
+    for (int n = 0; n < 3; n++) {
+        struct view view;
+        size_t seen = 0, odd = 0;
+        view_look_at(scene, eyes[n], (float[3]){0, 0, -10}, &view);
+        for (int way = 0; way < 2; way++) {
+            hills_begin(ways[way], &view, 1);
+            draw_tile(ways[way], &view, &light, depths_m[way], rgb[way], suns[way]);
+        }
+        for (int k = 0; k < TILE * TILE; k++) {
+            bool hit = isfinite(depths_m[0][k]);
+            bool same = hit == isfinite(depths_m[1][k]) &&
+                        (!hit || fabsf(depths_m[0][k] - depths_m[1][k]) < 1e-4f * depths_m[0][k]) &&
+                        fabsf(suns[0][k] - suns[1][k]) < 1e-3f;
+            for (int c = 0; c < 3; c++)
+                same &= fabsf(rgb[0][k][c] - rgb[1][k][c]) < 2e-3f;
+            seen += hit;
+            odd += !same;
+        }
+        assert_true(seen > 300);
+        if (odd > 4)
+            fail_msg("view %d: %zu of %zu pixels differ", n, odd, seen);
+    }
+    arena_destroy(arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rays__meet_what_embree_meets_from_everywhere_to_everywhere),
         cmocka_unit_test(test_rays__tell_the_triangle_its_weights_and_its_side),
         cmocka_unit_test(test_rays__through_vertices_and_edges_are_not_lost),
+        cmocka_unit_test(test_rays__draw_the_hills_that_the_triangles_draw),
         cmocka_unit_test(test_rays__end_where_they_are_told_and_of_two_samples_there_is_a_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,6 +4,11 @@
 #include "bake/horizon.h"
 
 #include <math.h>
+#include <stdint.h>
+
+/* Above, a ray a pixel is faster than a look at every chunk and triangle: at 800 x 600 pixels
+ * (tests/bench_terrain.c). */
+enum { TRIANGLES_DRAWN_MAX = 1 << 22 };
 
 struct backdrop_cpu {
     const struct scene *scene;
@@ -36,8 +41,11 @@ enum status backdrop_cpu_prepare(struct workspace *workspace, const struct scene
     struct backdrop_cpu *made = *backdrop = ARENA_NEW(workspace->arena, struct backdrop_cpu);
     made->scene = scene;
     made->flat = scene->terrain.samples_x > 0 && horizon_is_flat(&scene->terrain);
-    if (scene->terrain.samples_x > 0 && !made->flat)
-        made->hills = hills_prepare(workspace->arena, &scene->terrain);
+    if (scene->terrain.samples_x > 0 && !made->flat) {
+        const struct terrain *terrain = &scene->terrain;
+        uint64_t triangles = (uint64_t)(terrain->samples_x - 1) * (terrain->samples_z - 1) * 2;
+        made->hills = hills_prepare(workspace->arena, terrain, triangles > TRIANGLES_DRAWN_MAX);
+    }
     return STATUS_OK;
 }
 

@@ -11,9 +11,6 @@
 
 enum { CHUNK_SIDE = 8 };
 
-/* Above, a ray a pixel through the quadtree is faster than a look at every chunk and triangle. */
-enum { TRIANGLES_DRAWN_MAX = 1 << 19 };
-
 /* On the screen, px, row 0 on top. */
 struct bounds {
     float low[2], high[2];
@@ -66,12 +63,11 @@ static void chunk_sphere(const struct hills *hills, size_t chunk, float sphere[4
     sphere[3] = 1.0001f * sqrtf(square);
 }
 
-struct hills *hills_prepare(struct arena *arena, const struct terrain *terrain)
+struct hills *hills_prepare(struct arena *arena, const struct terrain *terrain, bool by_rays)
 {
     struct hills *hills = ARENA_NEW(arena, struct hills);
-    const uint64_t quads = (uint64_t)(terrain->samples_x - 1) * (terrain->samples_z - 1);
     hills->terrain = terrain;
-    if (2 * quads > TRIANGLES_DRAWN_MAX) {
+    if (by_rays) {
         hills->rays = terrain_rays_create(arena, terrain);
         return hills;
     }

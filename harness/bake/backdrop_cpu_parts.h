@@ -13,7 +13,9 @@ struct backdrop_light {
     float fog_color[3], fog_density_per_m; /* density 0: none */
 };
 
-struct hills *hills_prepare(struct arena *arena, const struct terrain *terrain);
+/* by_rays: a ray a pixel through a quadtree (bake/terrain_rays.h), not triangle by triangle: the
+ * same picture. */
+struct hills *hills_prepare(struct arena *arena, const struct terrain *terrain, bool by_rays);
 /* Projects vertices and chunks. */
 void hills_begin(struct hills *hills, const struct view *view, int threads);
 /* Nearer surfaces over what the tile holds: depths_m and rgb. */
