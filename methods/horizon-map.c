@@ -2,11 +2,10 @@
  * 1988, bake/skyline.h). Trees are no height field: they cast shadow volumes
  * (bake/shadow_passes.h), and the relief casts nothing on them. */
 #include "bake/shadow_passes.h"
-#include "bake/shadow_trees.h"
 #include "bake/skyline.h"
 
 struct options {
-    int samples, azimuths, lookup;
+    int samples, azimuths, lookup, triangles;
 };
 
 /* clang-format off */
@@ -17,6 +16,8 @@ static const struct option option_table[] = {
         "directions that the horizon is known in"),
     OPTION_WORD(struct options, lookup, 0, "mixed|nearest",
         "the horizon toward the sun from the two directions beside it, or the nearest one's, as published"),
+    OPTION(struct options, triangles, 262144, 1000, 8388608, "",
+        "that all trees may have together; more are refused: each is drawn twice and casts a volume in every frame"),
     OPTION_END,
 };
 /* clang-format on */
@@ -29,6 +30,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     struct shadow_passes *passes = NULL;
     struct shadow_passes_request request = {
         .samples = samples_of_word[options->samples],
+        .triangles_most = options->triangles,
         .azimuths = options->azimuths,
         .mixed = options->lookup == 0};
     enum status status = shadow_passes_prepare(workspace, scene, &request, &passes);
@@ -54,7 +56,6 @@ const struct method horizon_map_method = {
               TRAIT_MASK,
     .options = option_table,
     .options_size = sizeof(struct options),
-    .supported = shadow_trees_supported,
     .prepare = prepare,
     .draw = draw,
 };

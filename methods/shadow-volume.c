@@ -1,10 +1,9 @@
 /* shadow-volume: every triangle, lit by the sun where it is in no shadow volume
  * (bake/shadow_passes.h). */
 #include "bake/shadow_passes.h"
-#include "bake/shadow_trees.h"
 
 struct options {
-    int samples, test, volumes;
+    int samples, test, volumes, triangles;
 };
 
 /* clang-format off */
@@ -16,6 +15,8 @@ static const struct option option_table[] = {
         "auto: z-pass for the trees that cannot shade the eye"),
     OPTION_WORD(struct options, volumes, 0, "silhouette|triangles",
         "one volume behind what is connected, or one behind each triangle"),
+    OPTION(struct options, triangles, 262144, 1000, 8388608, "",
+        "that all trees may have together; more are refused: each is drawn twice and casts a volume in every frame"),
     OPTION_END,
 };
 /* clang-format on */
@@ -28,6 +29,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     struct shadow_passes *passes = NULL;
     struct shadow_passes_request request = {
         .samples = samples_of_word[options->samples],
+        .triangles_most = options->triangles,
         .volume = {.test = (enum shadow_test)options->test, .triangles = options->volumes}};
     enum status status = shadow_passes_prepare(workspace, scene, &request, &passes);
     *state = passes;
@@ -52,7 +54,6 @@ const struct method shadow_volume_method = {
               TRAIT_MASK,
     .options = option_table,
     .options_size = sizeof(struct options),
-    .supported = shadow_trees_supported,
     .prepare = prepare,
     .draw = draw,
 };

@@ -48,7 +48,7 @@ enum status shadow_passes_prepare(struct workspace *workspace, const struct scen
     if (status == STATUS_OK)
         status = sampling_prepare(workspace, request->samples, &made->sampling);
     if (status == STATUS_OK)
-        status = shadow_trees_prepare(workspace, scene, &made->trees);
+        status = shadow_trees_prepare(workspace, scene, request->triangles_most, &made->trees);
     if (status == STATUS_OK && workspace->effects & EFFECT_SUN_SHADOWS)
         status = prepare_shadows(workspace, scene, request, made);
     return status;

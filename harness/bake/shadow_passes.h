@@ -7,7 +7,8 @@
 #include "bake/shadow_volume.h"
 
 struct shadow_passes_request {
-    int samples; /* a pixel: 1, 4 or 16 */
+    int samples;        /* a pixel: 1, 4 or 16 */
+    int triangles_most; /* of all trees together */
     struct shadow_volume_request volume;
     int azimuths; /* of horizon maps, and then the relief casts no volume; 0: none */
     bool mixed;   /* of the two nearest azimuths */

@@ -43,22 +43,18 @@ struct filling {
     size_t vertices_count, indices_count;
 };
 
-enum status shadow_trees_supported(const struct scene *scene, const char **reason)
+static enum status check_room(struct workspace *workspace, const struct shadow_trees *trees,
+                              int triangles_most)
 {
-    struct error error;
+    const struct scene *scene = trees->scene;
     double triangles = 0;
-    for (size_t i = 0; i < scene->instances_count; i++) {
-        const struct mesh *mesh;
-        if (plant_mesh(scene->species[scene->instances[i].species].plant, &mesh, &error) !=
-            STATUS_OK)
-            return STATUS_OK; /* prepare will say why */
-        triangles += (double)mesh->triangles_count;
-        if (triangles <= SHADOW_TREES_ROOM)
-            continue;
-        *reason = "its trees have more than 2097152 triangles together";
-        return STATUS_UNSUPPORTED;
-    }
-    return STATUS_OK;
+    for (size_t i = 0; i < scene->instances_count; i++)
+        triangles += (double)trees->meshes[scene->instances[i].species]->triangles_count;
+    if (triangles <= triangles_most)
+        return STATUS_OK;
+    return error_set(workspace->error, STATUS_UNSUPPORTED,
+                     "trees: %.0f triangles together; allowed: %d, by option triangles", triangles,
+                     triangles_most);
 }
 
 void shadow_trees_place(const struct instance *instance, const float point[3], float world_m[3])
@@ -206,7 +202,7 @@ static void fill(struct workspace *workspace, struct shadow_trees *trees, struct
 }
 
 enum status shadow_trees_prepare(struct workspace *workspace, const struct scene *scene,
-                                 struct shadow_trees **trees)
+                                 int triangles_most, struct shadow_trees **trees)
 {
     struct shadow_trees *made = *trees = ARENA_NEW(workspace->arena, struct shadow_trees);
     enum status status = STATUS_OK;
@@ -218,6 +214,8 @@ enum status shadow_trees_prepare(struct workspace *workspace, const struct scene
         if (status == STATUS_OK)
             made->bounds[s] = cull_bound_of(made->meshes[s]);
     }
+    if (status == STATUS_OK)
+        status = check_room(workspace, made, triangles_most);
     for (int textured = 0; textured < 2 && status == STATUS_OK; textured++)
         status = gl_program(workspace->gl, "trees", shadow_volume_glsl,
                             textured ? "TREES 1\nTEXTURED 1" : "TREES 1", &made->programs[textured],

@@ -5,16 +5,11 @@
 
 #include "method/method.h"
 
-/* Triangles of all trees together that fit. */
-#define SHADOW_TREES_ROOM (1u << 21)
-
 struct shadow_trees;
 
-/* A method's `supported`: whether they fit. */
-enum status shadow_trees_supported(const struct scene *scene, const char **reason);
-
+/* STATUS_UNSUPPORTED where the trees have more triangles together than triangles_most. */
 enum status shadow_trees_prepare(struct workspace *workspace, const struct scene *scene,
-                                 struct shadow_trees **trees);
+                                 int triangles_most, struct shadow_trees **trees);
 /* A vertex of the instance's plant in the world: the same floats that are drawn. */
 void shadow_trees_place(const struct instance *instance, const float point[3], float world_m[3]);
 void shadow_trees_draw(struct workspace *workspace, const struct shadow_trees *trees,
