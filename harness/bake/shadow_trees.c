@@ -239,6 +239,17 @@ static bool is_seen(const struct shadow_trees *trees, const struct view *view, u
     return view_sees_sphere(view, center, bound->radius_m * instance_reach(instance) * 1.0001f);
 }
 
+void shadow_trees_indices(struct gl *gl, size_t first, size_t count)
+{
+    enum { CALL_INDICES = 3 << 14 };
+    for (size_t done = 0; done < count; done += CALL_INDICES) {
+        size_t left = count - done, part = left < CALL_INDICES ? left : CALL_INDICES;
+        gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)part, GL_UNSIGNED_INT,
+                         (first + done) * sizeof(uint32_t), 1, 0, 0);
+        gl->Flush();
+    }
+}
+
 void shadow_trees_draw(struct workspace *workspace, const struct shadow_trees *trees,
                        const struct view *view)
 {
@@ -261,8 +272,7 @@ void shadow_trees_draw(struct workspace *workspace, const struct shadow_trees *t
                 first = count ? first : run->first;
                 count += run->count;
             } else if (count) {
-                gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT,
-                                 first * sizeof(uint32_t), 1, 0, 0);
+                shadow_trees_indices(gl, first, count);
                 count = 0;
             }
         }

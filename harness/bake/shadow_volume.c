@@ -259,8 +259,7 @@ static void draw_stretch(struct gl *gl, const struct shadow_volume *volume, cons
             first = count ? first : piece->first[stretch];
             count += piece->count[stretch];
         } else if (count) {
-            gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT,
-                             (volume->offset[stretch] + first) * sizeof(uint32_t), 1, 0, 0);
+            shadow_trees_indices(gl, volume->offset[stretch] + first, count);
             count = 0;
         }
     }
