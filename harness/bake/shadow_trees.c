@@ -216,10 +216,12 @@ enum status shadow_trees_prepare(struct workspace *workspace, const struct scene
     }
     if (status == STATUS_OK)
         status = check_room(workspace, made, triangles_most);
+    bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
     for (int textured = 0; textured < 2 && status == STATUS_OK; textured++)
         status = gl_program(workspace->gl, "trees", shadow_volume_glsl,
-                            textured ? "TREES 1\nTEXTURED 1" : "TREES 1", &made->programs[textured],
-                            workspace->error);
+                            arena_printf(workspace->arena, "TREES 1\n%s%s",
+                                         textured ? "TEXTURED 1\n" : "", fog ? "FOG 1\n" : ""),
+                            &made->programs[textured], workspace->error);
     if (status != STATUS_OK)
         return status;
     struct arena *passing = arena_create(0);

@@ -1,14 +1,15 @@
 // Shadow volumes, and the trees that cast them. TREES: triangles in the world with their light, TEXTURED:
-// alpha-tested; else boundaries of volumes, which write nothing but the stencil.
+// alpha-tested, FOG: with fog; else boundaries of volumes, which write nothing but the stencil.
 #pragma stage vertex
 #ifdef TREES
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;  // w: 1 leaf, 0 bark
 layout(location = 2) in vec4 albedo;
+#ifdef FOG
 centroid out vec3 position_m;
+#endif
 centroid out vec3 shading_normal;
-centroid out vec3 surface_albedo;
-flat out int leaf;
+centroid out vec4 surface_albedo;  // w: 1 leaf, 0 bark
 #ifdef TEXTURED
 layout(location = 3) in vec2 uv;
 sample out vec2 texture_uv;
@@ -16,10 +17,11 @@ sample out vec2 texture_uv;
 
 void main()
 {
+#ifdef FOG
     position_m = position;
+#endif
     shading_normal = normal.xyz;
-    surface_albedo = albedo.rgb;
-    leaf = normal.w > 0.5 ? 1 : 0;
+    surface_albedo = vec4(albedo.rgb, normal.w);
 #ifdef TEXTURED
     texture_uv = uv;
 #endif
@@ -39,10 +41,11 @@ void main()
 #pragma stage fragment
 #ifdef TREES
 layout(location = 0) out vec4 color;
+#ifdef FOG
 centroid in vec3 position_m;
+#endif
 centroid in vec3 shading_normal;
-centroid in vec3 surface_albedo;
-flat in int leaf;
+centroid in vec4 surface_albedo;
 #ifdef TEXTURED
 sample in vec2 texture_uv;
 layout(binding = 0) uniform sampler2D picture;
@@ -50,16 +53,19 @@ layout(binding = 0) uniform sampler2D picture;
 
 void main()
 {
-    vec3 a = surface_albedo;
+    vec3 a = surface_albedo.rgb;
 #ifdef TEXTURED
     vec4 texel = texture(picture, texture_uv);
     if (texel.a < 0.5)
         discard;
     a *= texel.rgb;
 #endif
-    vec3 lit = leaf != 0 ? shade_leaf(a, shading_normal, gl_FrontFacing)
+    vec3 lit = surface_albedo.w > 0.5 ? shade_leaf(a, shading_normal, gl_FrontFacing)
                          : shade_bark(a, shading_normal, gl_FrontFacing);
-    color = vec4(shade_fog(lit, position_m), 1.0);
+#ifdef FOG
+    lit = shade_fog(lit, position_m);
+#endif
+    color = vec4(lit, 1.0);
 }
 #else
 void main()
