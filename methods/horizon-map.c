@@ -16,7 +16,7 @@ static const struct option option_table[] = {
         "directions that the horizon is known in"),
     OPTION_WORD(struct options, lookup, 0, "mixed|nearest",
         "the horizon toward the sun from the two directions beside it, or the nearest one's, as published"),
-    OPTION(struct options, triangles, 262144, 10000, 8388608, "",
+    OPTION(struct options, triangles, 524288, 10000, 8388608, "",
         "that all trees may have together; more are refused: each is drawn twice and casts a volume in every frame"),
     OPTION_END,
 };

@@ -15,7 +15,7 @@ static const struct option option_table[] = {
         "auto: z-pass for the trees that cannot shade the eye"),
     OPTION_WORD(struct options, volumes, 0, "silhouette|triangles",
         "one volume behind what is connected, or one behind each triangle"),
-    OPTION(struct options, triangles, 262144, 10000, 8388608, "",
+    OPTION(struct options, triangles, 524288, 10000, 8388608, "",
         "that all trees may have together; more are refused: each is drawn twice and casts a volume in every frame"),
     OPTION_END,
 };
