@@ -318,19 +318,25 @@ static void test_march_shadow__large_leaves_do_not_shade_themselves(void **state
     arena_destroy(world.arena);
 }
 
-/* Trees that shade each other and the ground. */
-static struct world world_of_forest(void)
+/* Trees that shade each other and the ground; their crowns are beside their feet, so that it
+ * matters how a tree is turned. */
+static struct world world_of_forest(float apart_m)
 {
     struct world world = world_of_balls(1, 3000, 0.25);
     struct scene *scene = &world.scene;
     struct random random = random_seed(8, 1);
+    struct mesh *mesh = ball_of_leaves(world.arena, 3000, 0.25);
+    for (size_t i = 0; i < mesh->vertices_count; i++)
+        mesh->positions[i][0] += 3;
+    mesh_bounds(mesh);
+    scene->species[0].plant = plant_from_mesh(world.arena, "beside", mesh);
     ground_add(&world);
     for (scene->instances_count = 0; scene->instances_count < 40; scene->instances_count++) {
         struct instance *tree = &scene->instances[scene->instances_count];
         *tree = scene->instances[0];
-        tree->position_m[0] = 11 * ((float)(scene->instances_count % 8) - 3.5f);
+        tree->position_m[0] = apart_m * ((float)(scene->instances_count % 8) - 3.5f);
         tree->position_m[1] = -2;
-        tree->position_m[2] = 11 * ((float)(scene->instances_count / 8) - 2);
+        tree->position_m[2] = apart_m * ((float)(scene->instances_count / 8) - 2);
         tree->rotation_rad = 6.28f * random_float(&random);
         tree->scale = 0.8f + 0.4f * random_float(&random);
     }
@@ -342,27 +348,56 @@ static struct world world_of_forest(void)
 static void test_march_shadow__a_forest_is_as_traced(void **state)
 {
     (void)state;
-    struct world world = world_of_forest();
+    struct world world = world_of_forest(11);
     struct both both = both_ready(&world);
     shadows_check(&world, &both, "forest");
     arena_destroy(world.arena);
 }
 
+static const unsigned below_effects[2] = {EFFECT_TWO_SIDED, EFFECT_TWO_SIDED | EFFECT_SUN_SHADOWS};
+
+/* What shadows leave of the forest's light, traced through a long lens. */
+static double light_traced(struct world *world)
+{
+    const struct view wide = world->view;
+    double means[2][4];
+    world->view.width_px = 48;
+    world->view.height_px = 40;
+    world->view.fov_y_rad = 0.04f;
+    for (int shaded = 0; shaded < 2; shaded++)
+        means_of(traced(world, below_effects[shaded]), means[shaded]);
+    world->view = wide;
+    return means[1][1] / means[0][1];
+}
+
+/* So near each other that most of their shade is the others', and that mostly their sunlit tops are
+ * seen; drawn one by one, and by cells. */
 static void test_march_shadow__trees_below_a_pixel_are_as_dark_as_traced(void **state)
 {
     (void)state;
-    const unsigned effects[2] = {EFFECT_TWO_SIDED, EFFECT_TWO_SIDED | EFFECT_SUN_SHADOWS};
-    struct world world = world_of_forest();
-    double drawn[2][4], true_means[2][4];
+    static const float eyes_m[2][3] = {{600, 800, 1600}, {-1200, 300, 1400}};
+    struct world world = world_of_forest(6);
     world.scene.terrain.samples_x = 0; /* of trees alone */
-    world_look(&world, 600, 800, 1600, 0, 2, 0);
-    for (int shaded = 0; shaded < 2; shaded++) {
-        means_of(march_picture(&world, &usual, effects[shaded], 2), drawn[shaded]);
-        means_of(traced(&world, effects[shaded]), true_means[shaded]);
+    struct ready *ready[2][2];
+    for (int k = 0; k < 4; k++) {
+        struct march_options options = usual;
+        options.cells = k & 1;
+        ready[k & 1][k / 2] = march_ready(&world, &options, below_effects[k / 2], 2);
     }
-    double share = drawn[1][1] / drawn[0][1], expected = true_means[1][1] / true_means[0][1];
-    if (!(fabs(share - expected) < 0.05 && expected < 0.7))
-        fail_msg("%g of the light, reference %g", share, expected);
+    for (int eye = 0; eye < 2; eye++) {
+        world_look(&world, eyes_m[eye][0], eyes_m[eye][1], eyes_m[eye][2], 0, 2, 0);
+        world_sun(&world, 0.7, 0.3, -0.5);
+        double expected = light_traced(&world);
+        for (int cells = 0; cells < 2; cells++) {
+            double means[2][4];
+            for (int shaded = 0; shaded < 2; shaded++)
+                means_of(ready_picture(&world, ready[cells][shaded]), means[shaded]);
+            double share = means[1][1] / means[0][1];
+            if (!(fabs(share - expected) < 0.045 && expected < 0.5))
+                fail_msg("%s from eye %d: %g of the light, reference %g", cells ? "cells" : "trees",
+                         eye, share, expected);
+        }
+    }
     arena_destroy(world.arena);
 }
 

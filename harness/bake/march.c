@@ -241,6 +241,14 @@ static void far_darken(struct march_far *far, float share)
         far->rgb[c] -= (1 - share) * far->sun_rgb[c];
 }
 
+/* The sine by which the way from the eye to a place rises. */
+static float rise_of(const struct march_view *picture, const float place_m[3])
+{
+    const float *eye_m = picture->view->eye_m;
+    float away[3] = {place_m[0] - eye_m[0], place_m[1] - eye_m[1], place_m[2] - eye_m[2]};
+    return away[1] / sqrtf(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
+}
+
 /* share: of its optical depth. */
 static void entry_splat(const struct march *march, const struct march_view *picture, uint32_t entry,
                         bool is_sprite, float share, struct canvas *canvas)
@@ -254,14 +262,16 @@ static void entry_splat(const struct march *march, const struct march_view *pict
         march_cell_middle(picture, sums, middle);
         far = march_fars_at(march->fars, picture->view, sums->species, MARCH_TURNS, middle);
         if (picture->shadows)
-            far_darken(&far, march_shadows_of_cell(picture->shadows, cell));
+            far_darken(&far, march_shadows_of_cell(picture->shadows, cell,
+                                                   rise_of(picture, sums->foot_m)));
         march_cell_splat(picture, sums, middle, &far, &splat);
     } else {
         const struct march_tree *tree = &march->trees[entry];
         march_middle(picture, tree, middle);
         far = march_fars_at(march->fars, picture->view, tree->species, tree->turn, middle);
         if (picture->shadows)
-            far_darken(&far, march_shadows_of_tree(picture->shadows, entry));
+            far_darken(&far, march_shadows_of_tree(picture->shadows, entry,
+                                                   rise_of(picture, tree->position_m)));
         if (is_sprite) {
             const struct march_far *its;
             const struct march_sprite *sprite = march_fars_sprite(

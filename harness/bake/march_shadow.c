@@ -29,11 +29,11 @@ struct march_shadows {
     float least_cell_m;
     int side;       /* of a tree's gains */
     uint8_t *gains; /* of each tree side x side: light that reaches its side of the sun, 0..255 */
-    uint8_t *unshaded;             /* side x side: all of it */
-    float *means;                  /* of each tree's gains, weighted by what it hides */
-    const struct cells *cells;     /* NULL: none */
-    float *cell_means;             /* of a cell's trees, weighted by what they hide */
-    struct shadow_caster *casters; /* by depth */
+    uint8_t *unshaded;               /* side x side: all of it */
+    struct shadow_means *means;      /* of each tree's gains */
+    const struct cells *cells;       /* NULL: none */
+    struct shadow_means *cell_means; /* of a cell's trees, weighted by what they hide */
+    struct shadow_caster *casters;   /* by depth */
     float *keys, *scratch_keys;
     uint32_t *order, *scratch_order;
     struct shadow_light light;
@@ -163,8 +163,8 @@ enum status march_shadows_create(struct workspace *workspace, const struct scene
     shadows->gains = ARENA_ARRAY(arena, uint8_t, count * gains + 4);
     shadows->unshaded = ARENA_ARRAY(arena, uint8_t, gains + 4);
     memset(shadows->unshaded, 255, gains + 4);
-    shadows->means = ARENA_ARRAY(arena, float, count);
-    shadows->cell_means = ARENA_ARRAY(arena, float, cells ? cells_count(cells) : 0);
+    shadows->means = ARENA_ARRAY(arena, struct shadow_means, count);
+    shadows->cell_means = ARENA_ARRAY(arena, struct shadow_means, cells ? cells_count(cells) : 0);
     shadows->casters = ARENA_ARRAY(arena, struct shadow_caster, count);
     shadows->keys = ARENA_ARRAY(arena, float, 2 * count);
     shadows->scratch_keys = shadows->keys + count;
@@ -220,17 +220,20 @@ static void map_build(struct march_shadows *shadows, int threads)
                     least_scale * shadows->least_cell_m, threads);
 }
 
-static float mean_of_cell(const struct march_shadows *shadows, uint32_t cell)
+static struct shadow_means means_of_cell(const struct march_shadows *shadows, uint32_t cell)
 {
     const uint32_t *instances;
     size_t count = cells_trees(shadows->cells, cell, &instances);
-    double sum = 0, squares = 0;
+    double all = 0, seen = 0, squares = 0;
     for (size_t i = 0; i < count; i++) {
+        const struct shadow_means *means = &shadows->means[instances[i]];
         double scale = (double)shadows->trees[instances[i]].scale;
-        sum += scale * scale * (double)shadows->means[instances[i]];
+        all += scale * scale * (double)means->all;
+        seen += scale * scale * (double)means->seen;
         squares += scale * scale;
     }
-    return squares > 0 ? (float)(sum / squares) : 1;
+    return squares > 0 ? (struct shadow_means){(float)(all / squares), (float)(seen / squares)}
+                       : (struct shadow_means){1, 1};
 }
 
 void march_shadows_light(struct march_shadows *shadows, const float sun_direction[3], int threads)
@@ -250,7 +253,7 @@ void march_shadows_light(struct march_shadows *shadows, const float sun_directio
     const size_t cells = shadows->cells ? cells_count(shadows->cells) : 0;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
     for (size_t cell = 0; cell < cells; cell++)
-        shadows->cell_means[cell] = mean_of_cell(shadows, (uint32_t)cell);
+        shadows->cell_means[cell] = means_of_cell(shadows, (uint32_t)cell);
 }
 
 void march_shadows_fill(const struct march_shadows *shadows, const struct march_tree *tree,
@@ -285,14 +288,23 @@ void march_shadows_fill(const struct march_shadows *shadows, const struct march_
                                                       (size_t)(shadows->side * shadows->side);
 }
 
-float march_shadows_of_tree(const struct march_shadows *shadows, uint32_t tree)
+/* Of ways through a layer of crowns, those that rise by a sine s pass 1 / s as many as upright
+ * ones: where g of the sun comes through, g to the power of the sun's sine over the eye's is in
+ * sight. So weighted, a tree's mean goes from the plain one (0) to what the sun sees (1). */
+static float mean_seen(const struct shadow_means *means, float sun_rise, float rise)
 {
-    return shadows->means[tree];
+    float power = fminf(fmaxf(sun_rise, 0) / fmaxf(fabsf(rise), 1e-3f), 1);
+    return means->all + power * (means->seen - means->all);
 }
 
-float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell)
+float march_shadows_of_tree(const struct march_shadows *shadows, uint32_t tree, float rise)
 {
-    return shadows->cell_means[cell];
+    return mean_seen(&shadows->means[tree], shadows->light.sun_direction[1], rise);
+}
+
+float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell, float rise)
+{
+    return mean_seen(&shadows->cell_means[cell], shadows->light.sun_direction[1], rise);
 }
 
 float march_shadows_at(const struct march_shadows *shadows, const float place_m[3])

@@ -27,9 +27,10 @@ void march_shadows_light(struct march_shadows *shadows, const float sun_directio
  * and of trees that stand alone. */
 void march_shadows_fill(const struct march_shadows *shadows, const struct march_tree *tree,
                         uint32_t level, struct march_job *job);
-/* Share of the sun that reaches a tree of the scene, or those of a cell, through all others. */
-float march_shadows_of_tree(const struct march_shadows *shadows, uint32_t tree);
-float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell);
+/* Share of the sun that reaches, through all others, what is seen of a tree of the scene, or of
+ * those of a cell, from an eye, whose way there rises by a sine. */
+float march_shadows_of_tree(const struct march_shadows *shadows, uint32_t tree, float rise);
+float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell, float rise);
 /* Share of the sun that reaches a place in the world, m, through trees and terrain. */
 float march_shadows_at(const struct march_shadows *shadows, const float place_m[3]);
 

@@ -82,11 +82,11 @@ static float entry_of(const struct shadow_light *light, const struct shadow_cast
     return caster->place_m[2] + caster->scale * entry_m - light->map.texel_m;
 }
 
-float shadow_light_gains(const struct shadow_light *light, const struct shadow_caster *caster,
-                         int side, uint8_t *gains)
+struct shadow_means shadow_light_gains(const struct shadow_light *light,
+                                       const struct shadow_caster *caster, int side, uint8_t *gains)
 {
     const struct shadow_volume *volume = caster->volume;
-    float sum = 0, weights = 0;
+    float sum = 0, squares = 0, weights = 0;
     for (int k = 0; k < side * side; k++) {
         const int at[2] = {k % side, k / side};
         float across_m[2], place_m[3], cover;
@@ -99,7 +99,8 @@ float shadow_light_gains(const struct shadow_light *light, const struct shadow_c
         float gain = light_along(light, place_m);
         gains[k] = (uint8_t)(255 * gain + 0.5f);
         sum += (cover + 1e-3f) * gain;
+        squares += (cover + 1e-3f) * gain * gain;
         weights += cover + 1e-3f;
     }
-    return sum / weights;
+    return (struct shadow_means){sum / weights, sum > 0 ? squares / sum : 0};
 }

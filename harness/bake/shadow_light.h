@@ -23,9 +23,16 @@ bool shadow_light_turn(struct shadow_light *light, const float sun_direction[3])
 void shadow_along(const struct shadow_axes *frame, const float world_m[3], float place_m[3]);
 /* Share of the sun that reaches a place in the world, m. */
 float shadow_light_at(const struct shadow_light *light, const float world_m[3]);
-/* Light that reaches a tree's side of the sun, side x side shares 0..255 over its volume; returns
- * their mean, weighted by what the tree hides. */
-float shadow_light_gains(const struct shadow_light *light, const struct shadow_caster *caster,
-                         int side, uint8_t *gains);
+/* Means of the light that reaches a tree's side of the sun, weighted by what the tree hides. Where
+ * trees stand close, the parts of one that the others leave in the light are also those that the
+ * others leave in sight: tops. */
+struct shadow_means {
+    float all;  /* of the whole tree */
+    float seen; /* of what is seen through the others from as high as the sun stands */
+};
+/* Light that reaches a tree's side of the sun, side x side shares 0..255 over its volume. */
+struct shadow_means shadow_light_gains(const struct shadow_light *light,
+                                       const struct shadow_caster *caster, int side,
+                                       uint8_t *gains);
 
 #endif
