@@ -375,7 +375,7 @@ static double light_traced(struct world *world)
 static void test_march_shadow__trees_below_a_pixel_are_as_dark_as_traced(void **state)
 {
     (void)state;
-    static const float eyes_m[2][3] = {{600, 800, 1600}, {-1200, 300, 1400}};
+    static const float eyes_m[3][3] = {{600, 800, 1600}, {-1200, 300, 1400}, {600, 1800, 100}};
     struct world world = world_of_forest(6);
     world.scene.terrain.samples_x = 0; /* of trees alone */
     struct ready *ready[2][2];
@@ -384,7 +384,7 @@ static void test_march_shadow__trees_below_a_pixel_are_as_dark_as_traced(void **
         options.cells = k & 1;
         ready[k & 1][k / 2] = march_ready(&world, &options, below_effects[k / 2], 2);
     }
-    for (int eye = 0; eye < 2; eye++) {
+    for (int eye = 0; eye < 3; eye++) {
         world_look(&world, eyes_m[eye][0], eyes_m[eye][1], eyes_m[eye][2], 0, 2, 0);
         world_sun(&world, 0.7, 0.3, -0.5);
         double expected = light_traced(&world);
