@@ -60,9 +60,7 @@ struct checks {
 
 /* What the sanitizers should see; the rest, with the large pictures, is tests/conform.sh's. */
 static const struct checks quick = {
-    "^(load|description|formats|sun-moved|state|memory|empty|one-tree|user-mesh|effects|tiny|"
-    "tally)$",
-    12};
+    "^(load|description|state|memory|empty|one-tree|user-mesh|effects|tiny)$", 9};
 /* What another back end could change; all of it is tests/conform.sh's. */
 static const struct checks few = {"^(load|formats|state|one-tree)$", 4};
 
