@@ -172,7 +172,7 @@ void shadow_caster_build(struct arena *arena, const struct mesh *mesh, bool grou
 
 size_t shadow_caster_room(const struct shadow_caster *caster)
 {
-    return 9 * caster->triangles_count;
+    return 18 * caster->triangles_count;
 }
 
 /* The sun's side of each triangle decides how, and whether, it casts. */
@@ -209,7 +209,13 @@ static void add_caps(const struct shadow_caster *caster, uint32_t base,
     }
 }
 
-static void add_walls(const struct shadow_caster *caster, uint32_t base, uint32_t infinity,
+static void add_wall(struct shadow_boundary *boundary, uint32_t a, uint32_t b, uint32_t ends)
+{
+    add_triangle(boundary->walls, &boundary->walls_count, a, b, b + ends);
+    add_triangle(boundary->walls, &boundary->walls_count, a, b + ends, a + ends);
+}
+
+static void add_walls(const struct shadow_caster *caster, uint32_t base, uint32_t ends,
                       struct shadow_boundary *boundary)
 {
     for (size_t e = 0; e < caster->edges_count; e++) {
@@ -220,13 +226,13 @@ static void add_walls(const struct shadow_caster *caster, uint32_t base, uint32_
         }
         uint32_t low = base + caster->edges[e][0], high = base + caster->edges[e][1];
         for (; sum > 0; sum--)
-            add_triangle(boundary->walls, &boundary->walls_count, high, low, infinity);
+            add_wall(boundary, high, low, ends);
         for (; sum < 0; sum++)
-            add_triangle(boundary->walls, &boundary->walls_count, low, high, infinity);
+            add_wall(boundary, low, high, ends);
     }
 }
 
-static void add_all_walls(const struct shadow_caster *caster, uint32_t base, uint32_t infinity,
+static void add_all_walls(const struct shadow_caster *caster, uint32_t base, uint32_t ends,
                           struct shadow_boundary *boundary)
 {
     for (size_t t = 0; t < caster->triangles_count; t++)
@@ -234,19 +240,18 @@ static void add_all_walls(const struct shadow_caster *caster, uint32_t base, uin
             uint32_t a = base + caster->triangles[t][i];
             uint32_t b = base + caster->triangles[t][(i + 1) % 3];
             bool turn = caster->weights[t] < 0;
-            add_triangle(boundary->walls, &boundary->walls_count, turn ? a : b, turn ? b : a,
-                         infinity);
+            add_wall(boundary, turn ? a : b, turn ? b : a, ends);
         }
 }
 
 void shadow_caster_extrude(const struct shadow_caster *caster, const float toward[3],
-                           bool silhouette, uint32_t base, uint32_t infinity,
+                           bool silhouette, uint32_t base, uint32_t ends,
                            struct shadow_boundary *boundary)
 {
     find_weights(caster, toward, silhouette);
     add_caps(caster, base, boundary);
     if (silhouette)
-        add_walls(caster, base, infinity, boundary);
+        add_walls(caster, base, ends, boundary);
     else
-        add_all_walls(caster, base, infinity, boundary);
+        add_all_walls(caster, base, ends, boundary);
 }

@@ -2,10 +2,10 @@
  * volume that the sun's rays leave dark behind them.
  *
  * The volume behind a triangle is bounded by the triangle itself, the cap, and by a wall from each
- * edge to the one point at infinity that lies away from the sun: for a light at infinity no far cap
- * is needed. Edges that two triangles of one volume share are bounded by both, in opposite
- * directions, and cancel: what is left is the silhouette (Crow 1977; for any mesh, with
- * multiplicity, Bergeron 1986 and Aldridge, Woods 2004). */
+ * edge to that edge's end, away from the sun: at infinity, where all ends are one point and no far
+ * cap is needed, or where nobody sees that it is open. Edges that two triangles of one volume share
+ * are bounded by both, in opposite directions, and cancel: what is left is the silhouette (Crow
+ * 1977; for any mesh, with multiplicity, Bergeron 1986 and Aldridge, Woods 2004). */
 #ifndef TREELINE_BAKE_SHADOW_CASTER_H
 #define TREELINE_BAKE_SHADOW_CASTER_H
 
@@ -42,14 +42,14 @@ struct shadow_boundary {
     uint32_t *walls, *caps, *leaf_caps;
     size_t walls_count, caps_count, leaf_caps_count; /* indices so far */
 };
-/* Indices that walls, or caps and leaf_caps each, may get. */
+/* Indices that walls may get; caps and leaf_caps may get a sixth of it each. */
 size_t shadow_caster_room(const struct shadow_caster *caster);
 
 /* Adds to a boundary. toward: to the sun, in the mesh's space, any length. The point i becomes base
- * + i; infinity is the index of the point at infinity. silhouette false: each triangle has a volume
- * of its own, with three walls. */
+ * + i, and its end base + i + ends. A wall is two triangles, of which the second has no area where
+ * ends are one point. silhouette false: each triangle has a volume of its own, with three walls. */
 void shadow_caster_extrude(const struct shadow_caster *caster, const float toward[3],
-                           bool silhouette, uint32_t base, uint32_t infinity,
+                           bool silhouette, uint32_t base, uint32_t ends,
                            struct shadow_boundary *boundary);
 
 #endif

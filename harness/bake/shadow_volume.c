@@ -3,6 +3,7 @@
 #include "bake/backdrop.h"
 #include "bake/cull.h"
 #include "bake/shadow_caster.h"
+#include "bake/shadow_floor.h"
 #include "bake/shadow_trees.h"
 #include "base/clock.h"
 
@@ -19,6 +20,7 @@ struct shadow_piece {
     const struct instance *instance;           /* NULL: the terrain */
     uint32_t base;                             /* its first point */
     float center_m[3], radius_m;               /* of a sphere that holds it */
+    float floor_m;                             /* its walls end there; NaN: at infinity */
     size_t first[STRETCHES], count[STRETCHES]; /* indices */
 };
 
@@ -26,6 +28,8 @@ struct shadow_volume {
     struct shadow_volume_request request;
     size_t pieces_count, points_count;
     struct shadow_piece *pieces;
+    struct shadow_floor *ground;
+    float (*places_m)[3]; /* of points, in the world */
     GLuint program, vertices, points, indices;
     size_t room[STRETCHES], offset[STRETCHES]; /* indices that may come; begin in the buffer */
     size_t indices_room;                       /* of the buffer */
@@ -42,26 +46,25 @@ static void add_piece(struct shadow_volume *volume, const struct shadow_caster *
     piece->base = (uint32_t)volume->points_count;
     volume->points_count += caster->points_count;
     for (int s = 0; s < STRETCHES; s++)
-        volume->room[s] += shadow_caster_room(caster) / (s == WALLS ? 1 : 3);
+        volume->room[s] += shadow_caster_room(caster) / (s == WALLS ? 1 : 6);
 }
 
-/* Points of all casters, the one at infinity first; and a sphere about each caster. */
-static void place_points(struct shadow_volume *volume, float (*points)[4])
+/* Points of all casters, and a sphere about each caster. */
+static void place_points(struct shadow_volume *volume)
 {
     for (size_t p = 0; p < volume->pieces_count; p++) {
         struct shadow_piece *piece = &volume->pieces[p];
         const struct shadow_caster *caster = piece->caster;
         float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
         for (size_t i = 0; i < caster->points_count; i++) {
-            float *point = points[piece->base + i];
+            float *place = volume->places_m[piece->base + i];
             if (piece->instance)
-                shadow_trees_place(piece->instance, caster->points[i], point);
+                shadow_trees_place(piece->instance, caster->points[i], place);
             else
-                memcpy(point, caster->points[i], sizeof caster->points[i]);
-            point[3] = 1;
+                memcpy(place, caster->points[i], sizeof caster->points[i]);
             for (int axis = 0; axis < 3; axis++) {
-                low[axis] = fminf(low[axis], point[axis]);
-                high[axis] = fmaxf(high[axis], point[axis]);
+                low[axis] = fminf(low[axis], place[axis]);
+                high[axis] = fmaxf(high[axis], place[axis]);
             }
         }
         float square = 0;
@@ -73,6 +76,20 @@ static void place_points(struct shadow_volume *volume, float (*points)[4])
     }
 }
 
+/* Room for points, as they are, and for their ends. */
+static void upload_points(struct gl *gl, struct shadow_volume *volume)
+{
+    size_t bytes = 2 * volume->points_count * sizeof(float[4]);
+    struct arena *passing = arena_create(0);
+    float(*points)[4] = arena_alloc(passing, 2 * volume->points_count, sizeof *points);
+    for (size_t i = 0; i < volume->points_count; i++) {
+        memcpy(points[i], volume->places_m[i], sizeof volume->places_m[i]);
+        points[i][3] = 1;
+    }
+    volume->points = gl_buffer(gl, (GLsizeiptr)bytes, points, GL_DYNAMIC_STORAGE_BIT);
+    arena_destroy(passing);
+}
+
 static enum status find_casters(struct workspace *workspace, const struct scene *scene,
                                 struct shadow_volume *volume)
 {
@@ -81,7 +98,6 @@ static enum status find_casters(struct workspace *workspace, const struct scene 
         ARENA_ARRAY(arena, struct shadow_caster, scene->species_count + 1);
     const struct mesh *mesh = NULL;
     volume->pieces = ARENA_ARRAY(arena, struct shadow_piece, scene->instances_count + 1);
-    volume->points_count = 1; /* at infinity */
     for (size_t s = 0; s < scene->species_count; s++) {
         enum status status = plant_mesh(scene->species[s].plant, &mesh, workspace->error);
         if (status != STATUS_OK)
@@ -113,14 +129,12 @@ enum status shadow_volume_prepare(struct workspace *workspace, const struct scen
         return status;
     for (int s = 0; s < STRETCHES; s++)
         made->lists[s] = ARENA_ARRAY(workspace->arena, uint32_t, made->room[s]);
-    struct arena *passing = arena_create(0);
-    float(*points)[4] = arena_alloc(passing, made->points_count, sizeof *points);
-    place_points(made, points);
-    made->points = gl_buffer(gl, (GLsizeiptr)(made->points_count * sizeof *points), points,
-                             GL_DYNAMIC_STORAGE_BIT);
-    arena_destroy(passing);
+    made->ground = shadow_floor_create(workspace->arena, &scene->terrain);
+    made->places_m = arena_alloc(workspace->arena, made->points_count, sizeof *made->places_m);
+    place_points(made);
+    upload_points(gl, made);
     made->vertices = gl_vertex_array(gl);
-    gl->VertexArrayVertexBuffer(made->vertices, 0, made->points, 0, sizeof *points);
+    gl->VertexArrayVertexBuffer(made->vertices, 0, made->points, 0, sizeof(float[4]));
     gl->VertexArrayAttribFormat(made->vertices, 0, 4, GL_FLOAT, GL_FALSE, 0);
     gl->VertexArrayAttribBinding(made->vertices, 0, 0);
     gl->EnableVertexArrayAttrib(made->vertices, 0);
@@ -158,6 +172,31 @@ static void upload_indices(struct gl *gl, struct shadow_volume *volume, const si
     }
 }
 
+/* Where the rays of the sun through each point end: at the piece's floor, or at infinity. */
+static void place_ends(struct gl *gl, struct shadow_volume *volume, const float sun[3])
+{
+    size_t bytes = volume->points_count * sizeof(float[4]);
+    struct arena *passing = arena_create(0);
+    float(*ends)[4] = arena_alloc(passing, volume->points_count, sizeof *ends);
+    for (size_t p = 0; p < volume->pieces_count; p++) {
+        struct shadow_piece *piece = &volume->pieces[p];
+        size_t last = piece->base + piece->caster->points_count;
+        piece->floor_m =
+            piece->instance ? shadow_floor_of(volume->ground, piece->center_m, piece->radius_m, sun)
+                            : NAN;
+        for (size_t i = piece->base; i < last; i++) {
+            const float *place = volume->places_m[i];
+            float along_m = fmaxf(0, place[1] - piece->floor_m) / sun[1];
+            bool ended = !isnan(piece->floor_m);
+            for (int axis = 0; axis < 3; axis++)
+                ends[i][axis] = ended ? place[axis] - along_m * sun[axis] : -sun[axis];
+            ends[i][3] = ended;
+        }
+    }
+    gl->NamedBufferSubData(volume->points, (GLintptr)bytes, (GLsizeiptr)bytes, ends);
+    arena_destroy(passing);
+}
+
 static void extrude(struct workspace *workspace, struct shadow_volume *volume,
                     const float sun_direction[3])
 {
@@ -173,13 +212,12 @@ static void extrude(struct workspace *workspace, struct shadow_volume *volume,
         toward_sun(piece->instance, sun_direction, toward);
         for (int s = 0; s < STRETCHES; s++)
             piece->first[s] = *counts[s];
-        shadow_caster_extrude(piece->caster, toward, !volume->request.triangles, piece->base, 0,
-                              &boundary);
+        shadow_caster_extrude(piece->caster, toward, !volume->request.triangles, piece->base,
+                              (uint32_t)volume->points_count, &boundary);
         for (int s = 0; s < STRETCHES; s++)
             piece->count[s] = *counts[s] - piece->first[s];
     }
-    float away[4] = {-sun_direction[0], -sun_direction[1], -sun_direction[2], 0};
-    workspace->gl->NamedBufferSubData(volume->points, 0, sizeof away, away);
+    place_ends(workspace->gl, volume, sun_direction);
     upload_indices(workspace->gl, volume,
                    (size_t[]){boundary.walls_count, boundary.caps_count, boundary.leaf_caps_count});
 }
@@ -196,7 +234,7 @@ void shadow_volume_extrude(struct workspace *workspace, struct shadow_volume *vo
     workspace->gl->Finish();
     workspace->tally.shadow_seconds += clock_wall_seconds() - start;
     workspace->tally.shadow_bytes +=
-        volume->indices_room * sizeof(uint32_t) + volume->points_count * 4 * sizeof(float);
+        volume->indices_room * sizeof(uint32_t) + 2 * volume->points_count * sizeof(float[4]);
 }
 
 /* lim far -> infinity: clip z = clip w - 2 near for a point, and exactly clip w at infinity. */
@@ -212,14 +250,18 @@ void shadow_volume_view(struct view *view)
 
 /* Whether a piece's volume may be seen: its sphere, swept away from the sun, is outside of no
  * plane. */
-static bool is_seen(const struct shadow_piece *piece, float planes[6][4], const float sun[3])
+static bool is_seen(const struct shadow_piece *piece, float planes[6][4], const float sun[3],
+                    bool endless)
 {
+    bool ended = !endless && !isnan(piece->floor_m);
+    float length_m = ended ? (piece->center_m[1] + piece->radius_m - piece->floor_m) / sun[1] : 0;
     for (int i = 0; i < 4; i++) { /* near and far are no borders to a volume */
         const float *n = planes[i];
         float along = n[0] * sun[0] + n[1] * sun[1] + n[2] * sun[2];
         float at = n[0] * piece->center_m[0] + n[1] * piece->center_m[1] +
                    n[2] * piece->center_m[2] + n[3];
-        if (along >= 0 && at < -1.001f * piece->radius_m)
+        bool leaves = along >= 0 || (ended && at - along * length_m < -1.001f * piece->radius_m);
+        if (leaves && at < -1.001f * piece->radius_m)
             return false;
     }
     return true;
@@ -239,13 +281,13 @@ static bool may_hold_eye(const struct shadow_piece *piece, const struct view *vi
 }
 
 static bool is_counted(const struct shadow_volume *volume, const struct shadow_piece *piece,
-                       const struct view *view, float planes[6][4], bool z_fail)
+                       const struct view *view, float planes[6][4], bool z_fail, bool endless)
 {
     enum shadow_test test = volume->request.test;
     bool fails =
         test == SHADOW_Z_FAIL ||
         (test == SHADOW_AUTO && (!piece->instance || may_hold_eye(piece, view, volume->sun)));
-    return fails == z_fail && is_seen(piece, planes, volume->sun);
+    return fails == z_fail && is_seen(piece, planes, volume->sun, endless);
 }
 
 /* A stretch of the pieces that are tested this way, neighbours in one call. */
@@ -302,6 +344,9 @@ void shadow_volume_count(struct workspace *workspace, const struct shadow_volume
     gl->BindVertexArray(volume->vertices);
     gl->UniformMatrix4fv(gl_uniform(gl, volume->program, "view_projection"), 1, GL_FALSE,
                          view->view_projection[0]);
+    gl->Uniform1i(gl_uniform(gl, volume->program, "points"), (GLint)volume->points_count);
+    gl->Uniform3f(gl_uniform(gl, volume->program, "away"), -volume->sun[0], -volume->sun[1],
+                  -volume->sun[2]);
     gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     gl->DepthMask(GL_FALSE);
     gl->DepthFunc(GL_LESS);
@@ -310,8 +355,10 @@ void shadow_volume_count(struct workspace *workspace, const struct shadow_volume
     gl->Enable(GL_STENCIL_TEST);
     gl->StencilFunc(GL_ALWAYS, 0, 0xff);
     for (int z_fail = 0; z_fail < 2; z_fail++) {
+        bool endless = z_fail || !shadow_floor_is_below(volume->ground, view);
+        gl->Uniform1i(gl_uniform(gl, volume->program, "endless"), endless);
         for (size_t p = 0; p < volume->pieces_count; p++)
-            counted[p] = is_counted(volume, &volume->pieces[p], view, planes, z_fail);
+            counted[p] = is_counted(volume, &volume->pieces[p], view, planes, z_fail, endless);
         draw_boundaries(gl, volume, counted, z_fail);
     }
     gl->Disable(GL_DEPTH_CLAMP);

@@ -28,13 +28,17 @@ void main()
     gl_Position = view_projection * vec4(position, 1.0);
 }
 #else
-layout(location = 0) in vec4 position;  // w: 1, or 0 at infinity
+layout(location = 0) in vec4 position;  // w: 1, or 0 at infinity; points, then the ends of their walls
+uniform int points;
+uniform bool endless;  // all ends are at infinity
+uniform vec3 away;     // from the sun
 
 void main()
 {
+    vec4 at = endless && gl_VertexID >= points ? vec4(away, 0.0) : position;
     // the very expression that surfaces are drawn with, so that a cap has its surface's depth
-    vec4 near = view_projection * vec4(position.xyz, 1.0);
-    gl_Position = position.w > 0.0 ? near : view_projection * vec4(position.xyz, 0.0);
+    vec4 near = view_projection * vec4(at.xyz, 1.0);
+    gl_Position = at.w > 0.0 ? near : view_projection * vec4(at.xyz, 0.0);
 }
 #endif
 
