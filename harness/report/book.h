@@ -206,6 +206,8 @@ void theme_svg(const char *svg, const char *prefix, const char *title, bool alon
 enum figure_kind {
     FIGURE_TRADE_SAME,
     FIGURE_TRADE_FULL,
+    FIGURE_MASKS,
+    FIGURE_MASKS_DISTANCE,
     FIGURE_GROWTH,
     FIGURE_DISTANCE,
     FIGURE_PACE,

@@ -170,6 +170,9 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
     static const char *const captions[] = {
         [FIGURE_TRADE_SAME] = "Error of the representation.",
         [FIGURE_TRADE_FULL] = "Total error.",
+        [FIGURE_MASKS] = "Bars: across, from the best view to the worst; up, 95 % intervals. To "
+                         "the left and below is better.",
+        [FIGURE_MASKS_DISTANCE] = "One point a view; mask against rays.",
         [FIGURE_GROWTH] = ("Bars: 95 % intervals. Lines: a power law fitted to three or more tree "
                            "counts; N^(\u22121) means that twice the trees take twice the time."),
         [FIGURE_DISTANCE] = "One point a view; error of the representation.",
@@ -195,7 +198,8 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
             continue;
         if (!shown++)
             fprintf(page->out, "<div%s><div class=\"figures%s\">\n",
-                    figure->kind >= FIGURE_ROOFLINE || figure->kind == FIGURE_PACE
+                    figure->kind >= FIGURE_ROOFLINE || figure->kind == FIGURE_PACE ||
+                            figure->kind == FIGURE_MASKS || figure->kind == FIGURE_MASKS_DISTANCE
                         ? ""
                         : " class=\"still\"",
                     figure->kind == FIGURE_SWEEP ? " three" : "");
@@ -224,6 +228,21 @@ static void put_trade(const struct page *page)
     page_text(page, "</div></details>\n");
     page_text(page, "<div class=\"live\"><h2 id=\"split\">Where the error comes from</h2>\n"
                     "<div id=\"live-split\"></div></div>\n");
+}
+
+static void put_masks(const struct page *page)
+{
+    if (!page_has(page, FIGURE_MASKS))
+        return;
+    page_text(page, "<h2 id=\"shadows\">Wrong shadows against their price</h2>\n<p>Of methods that "
+                    "draw the sun's shadow as a mask: the share of the surface on which it is "
+                    "not what rays say, whatever the light and the trees look like. Its price is "
+                    "what a frame takes more than the same triangles without shadows (method "
+                    "polygons), where the run has them.</p>\n");
+    page_figures(page, FIGURE_MASKS, FIGURE_MASKS);
+    if (page_has(page, FIGURE_MASKS_DISTANCE))
+        page_text(page, "<h3>Wrong shadows against distance</h3>\n");
+    page_figures(page, FIGURE_MASKS_DISTANCE, FIGURE_MASKS_DISTANCE);
 }
 
 static void put_growth_and_distance(const struct page *page)
@@ -326,6 +345,7 @@ static void put_page(const struct page *page)
     put_facts(page);
     page_live(page, "live-controls");
     put_trade(page);
+    put_masks(page);
     put_growth_and_distance(page);
     put_angles(page);
     put_options(page);

@@ -59,6 +59,12 @@ enum status plot_views(const struct book *book, const struct group *group, enum 
 /* Frame time against distance, of groups whose cells timed just the views that are compared. */
 enum status plot_pace(const struct book *book, const struct group *group, const char *folder,
                       struct figure *figure, struct error *error);
+/* What is wrong in a group's shadow masks: against what shadows cost, which is a frame's time over
+ * that of method polygons where the group has it; over the distances of its views. */
+enum status plot_masks(const struct book *book, const struct group *group, const char *folder,
+                       struct figure *figure, struct error *error);
+enum status plot_masks_distance(const struct book *book, const struct group *group,
+                                const char *folder, struct figure *figure, struct error *error);
 /* How many series of the same method come before this one: tells them apart by dashes. */
 int plot_variant(const struct book *book, size_t series);
 /* Cells of a group under the machine's roof: frames a second of all of them; triangles a second

@@ -7,7 +7,7 @@
 
 enum {
     FAMILIES_MAX = 6,
-    KINDS_COUNT = 7 + ROOFLINES_COUNT,
+    KINDS_COUNT = 9 + ROOFLINES_COUNT,
     SWEEPS_MAX = 6,
     SWEEP_AXES = SWEEP_MEMORY + 1
 };
@@ -27,6 +27,12 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
         status = plot_trade(book, group, full, folder, &figures->list[figures->count], error);
         keep(figures);
     }
+    if (status == STATUS_OK)
+        status = plot_masks(book, group, folder, &figures->list[figures->count], error);
+    keep(figures);
+    if (status == STATUS_OK)
+        status = plot_masks_distance(book, group, folder, &figures->list[figures->count], error);
+    keep(figures);
     if (status == STATUS_OK)
         status = plot_growth(book, group->family, folder, &figures->list[figures->count], error);
     keep(figures);

@@ -1,0 +1,247 @@
+/* The static plots of shadow masks: what is wrong against what shadows cost, and against distance.
+ */
+#include "report/plot.h"
+#include "stats/stats.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINES_MAX = 24 };
+
+/* Draws all triangles in the same light without shadows. */
+static const char unshaded[] = "polygons";
+
+struct masks {
+    struct plot plot;
+    const struct group *group;
+    struct axis x, y;
+    double base_seconds; /* of the method without shadows; 0: the run has none here */
+    double floor;        /* what the truth's noise gives; NaN: far below */
+    bool *on_front;      /* a row of the group */
+};
+
+static bool is_drawn(const struct row *row)
+{
+    return row->ok && !isnan(row->values[COLUMN_mask_wrong]) &&
+           !isnan(row->values[COLUMN_frame_seconds]);
+}
+
+/* Milliseconds that shadows add; what measures as less than the axis shows stands at its foot. */
+static double cost_ms(const struct masks *masks, const struct row *row, enum column_index column)
+{
+    return fmax(1e3 * (row->values[column] - masks->base_seconds), masks->y.low);
+}
+
+static double wrong_percent(const struct masks *masks, const struct row *row)
+{
+    return fmax(100 * row->values[COLUMN_mask_wrong], masks->x.low);
+}
+
+/* Smallest and largest percent over a row's views. */
+static struct axis views_range(const struct row *row)
+{
+    struct axis range = {.low = INFINITY, .high = -INFINITY};
+    for (size_t i = 0; i < row->seen->views_count; i++) {
+        const struct result_view *view = &row->seen->views[i];
+        if (view->masked && !isnan(view->mask.wrong)) {
+            range.low = fmin(range.low, 100 * view->mask.wrong);
+            range.high = fmax(range.high, 100 * view->mask.wrong);
+        }
+    }
+    return range;
+}
+
+static void masks_survey(struct masks *masks)
+{
+    const struct book *book = masks->plot.book;
+    const struct group *group = masks->group;
+    double *cost = ARENA_ARRAY(book->arena, double, group->rows_count);
+    double *error = ARENA_ARRAY(book->arena, double, group->rows_count);
+    masks->on_front = ARENA_ARRAY(book->arena, bool, group->rows_count);
+    masks->floor = NAN;
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &book->rows[group->rows[i]];
+        double seconds = row->values[COLUMN_frame_seconds];
+        if (row->ok && strcmp(row->method, unshaded) == 0 && seconds > 0 &&
+            !(masks->base_seconds > 0 && masks->base_seconds < seconds))
+            masks->base_seconds = seconds;
+    }
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &book->rows[group->rows[i]];
+        bool drawn = is_drawn(row);
+        cost[i] = drawn ? row->values[COLUMN_frame_seconds] : NAN;
+        error[i] = drawn ? row->values[COLUMN_mask_wrong] : NAN;
+        if (!drawn)
+            continue;
+        struct axis range = views_range(row);
+        axis_add(&masks->x, range.low);
+        axis_add(&masks->x, range.high);
+        axis_add(&masks->y, 1e3 * (cost[i] - masks->base_seconds));
+        axis_add(&masks->y, 1e3 * (row->values[COLUMN_frame_seconds_high] - masks->base_seconds));
+        masks->floor = fmax(masks->floor, 100 * row->values[COLUMN_mask_floor]);
+    }
+    stats_pareto(cost, error, group->rows_count, masks->on_front);
+    if (masks->floor > masks->x.low / 30)
+        axis_add(&masks->x, masks->floor);
+    else
+        masks->floor = NAN;
+    axis_widen(&masks->x, 0.08, 0.08);
+    axis_widen(&masks->y, 0.08, 0.1);
+}
+
+/* Every setting that there is room for has its name, those of the front first. */
+static void masks_notes(struct masks *masks)
+{
+    struct plot *plot = &masks->plot;
+    const struct group *group = masks->group;
+    for (int pass = 0; pass < 3; pass++)
+        for (size_t i = 0; i < group->rows_count; i++) {
+            const struct row *row = &plot->book->rows[group->rows[i]];
+            if (!is_drawn(row))
+                continue;
+            double x = wrong_percent(masks, row), y = cost_ms(masks, row, COLUMN_frame_seconds);
+            if (pass == 0)
+                plot_keep_clear(plot, x, y);
+            else if (*row->variant && masks->on_front[i] == (pass == 1))
+                plot_note(plot, x, y, row->variant);
+        }
+    if (!isnan(masks->floor))
+        fprintf(plot->gp,
+                "set arrow 1 from first %.9g, graph 0 to first %.9g, graph 1 nohead dashtype 3 "
+                "linecolor rgb \"#%06x\"\nset label 1 \"noise of the reference\" at first %.9g, "
+                "graph 0.98 right rotate by 90 offset 0.8,0 font \",10\" textcolor rgb \"#%06x\"\n",
+                masks->floor, masks->floor, tint_rgb(TINT_MUTED), masks->floor,
+                tint_rgb(TINT_MUTED));
+}
+
+/* Percent, smallest and largest over the views, ms, low, high: a method's points, filled on the
+ * front. */
+static void masks_points(struct masks *masks, size_t method, bool front)
+{
+    struct plot *plot = &masks->plot;
+    const struct book *book = plot->book;
+    int block = -1;
+    for (size_t i = 0; i < masks->group->rows_count; i++) {
+        const struct row *row = &book->rows[masks->group->rows[i]];
+        if (row->method_index != method || masks->on_front[i] != front || !is_drawn(row))
+            continue;
+        if (block < 0)
+            block = plot_block(plot, "percent ms smallest largest low high");
+        struct axis range = views_range(row);
+        fprintf(plot->dat, "%.9g %.9g %.9g %.9g %.9g %.9g # %s\n", wrong_percent(masks, row),
+                cost_ms(masks, row, COLUMN_frame_seconds), fmax(range.low, masks->x.low),
+                fmax(range.high, masks->x.low), cost_ms(masks, row, COLUMN_frame_seconds_low),
+                cost_ms(masks, row, COLUMN_frame_seconds_high), row->label);
+    }
+    if (block < 0)
+        return;
+    plot_curve(plot);
+    fprintf(plot->gp,
+            "\"%s.dat\" index %d using 1:2:3:4:5:6 with xyerrorbars pointtype %d pointsize 0.9 "
+            "linewidth 1 linecolor rgb \"#%06x\" title ",
+            plot->name, block, symbol_gnuplot(book, method, front),
+            tint_rgb(tint_method(book, method)));
+    plot_text(plot->gp, front ? arena_printf(book->arena, "%s, on the front", book->methods[method])
+                              : book->methods[method]);
+    plot->key_rows++;
+}
+
+enum status plot_masks(const struct book *book, const struct group *group, const char *folder,
+                       struct figure *figure, struct error *error)
+{
+    struct masks masks = {.group = group, .x = axis_empty(), .y = axis_empty()};
+    size_t drawn = 0;
+    for (size_t i = 0; i < group->rows_count; i++)
+        drawn += is_drawn(&book->rows[group->rows[i]]);
+    if (drawn < 2)
+        return STATUS_OK;
+    struct plot *plot = &masks.plot;
+    figure->kind = FIGURE_MASKS;
+    plot_open(plot, book, folder, arena_printf(book->arena, "masks-%s", group->slug), group->title);
+    masks_survey(&masks);
+    plot_axes(plot, &masks.x, &masks.y, "share of the surface whose shadow is wrong [%]",
+              masks.base_seconds > 0 ? "time a frame over polygons' [ms]" : "time a frame [ms]");
+    masks_notes(&masks); /* settings stand before the first curve */
+    for (size_t m = 0; m < book->methods_count; m++)
+        for (int front = 1; front >= 0; front--)
+            masks_points(&masks, m, front);
+    plot->columns = 2;
+    plot->key_rows = (plot->key_rows + 1) / 2;
+    return plot_close(plot, figure, error);
+}
+
+struct sight {
+    double distance_m, percent;
+};
+
+static int compare_sights(const void *a, const void *b)
+{
+    const struct sight *x = a, *y = b;
+    return (x->distance_m > y->distance_m) - (x->distance_m < y->distance_m);
+}
+
+/* A row's views that have a mask, by distance; sights has a place for each view. */
+static size_t sights_of(const struct row *row, struct sight *sights)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < row->seen->views_count; i++) {
+        const struct result_view *view = &row->seen->views[i];
+        if (view->masked && view->mask.wrong > 0 && view->distance_m > 0)
+            sights[count++] = (struct sight){view->distance_m, 100 * view->mask.wrong};
+    }
+    qsort(sights, count, sizeof *sights, compare_sights);
+    return count;
+}
+
+static void put_curve(struct plot *plot, const struct row *row)
+{
+    const struct book *book = plot->book;
+    struct sight *sights = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
+    size_t count = sights_of(row, sights);
+    if (!count)
+        return;
+    int block = plot_block(plot, row->label), variant = plot_variant(book, row->series);
+    for (size_t i = 0; i < count; i++)
+        fprintf(plot->dat, "%.9g %.9g\n", sights[i].distance_m, sights[i].percent);
+    plot_curve(plot);
+    fprintf(
+        plot->gp,
+        "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
+        "%d linecolor rgb \"#%06x\" title ",
+        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
+        tint_rgb(tint_method(book, row->method_index)));
+    plot_text(plot->gp, row->label);
+    plot->key_rows++;
+}
+
+enum status plot_masks_distance(const struct book *book, const struct group *group,
+                                const char *folder, struct figure *figure, struct error *error)
+{
+    struct axis x = axis_empty(), y = axis_empty();
+    if (!views_go(book, group, VIEW_DISTANCE) || group->rows_count > LINES_MAX)
+        return STATUS_OK;
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &book->rows[group->rows[i]];
+        struct sight *sights = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
+        size_t count = sights_of(row, sights);
+        for (size_t k = 0; k < count; k++) {
+            axis_add(&x, sights[k].distance_m);
+            axis_add(&y, sights[k].percent);
+        }
+    }
+    if (x.low > x.high)
+        return STATUS_OK;
+    axis_widen(&x, 0.05, 0.05);
+    axis_widen(&y, 0.08, 0.08);
+    struct plot plot;
+    figure->kind = FIGURE_MASKS_DISTANCE;
+    plot_open(&plot, book, folder, arena_printf(book->arena, "masks-distance-%s", group->slug),
+              group->title);
+    plot_axes(&plot, &x, &y, "median distance to the trees in view [m]",
+              "share of the surface whose shadow is wrong [%]");
+    fputs("set key maxcols 1\n", plot.gp);
+    for (size_t i = 0; i < group->rows_count; i++)
+        put_curve(&plot, &book->rows[group->rows[i]]);
+    return plot_close(&plot, figure, error);
+}
