@@ -1,5 +1,5 @@
 /* Golden values of the shaders of needles: mpmath and converged quadrature of the definitions, as
- * the sheet of corrected formulas of paper 002 gives them (its section 10, G1 to G8; angles in
+ * the sheet of corrected formulas of paper 002 gives them (its section 10, G1 to G9; angles in
  * degrees, vectors before they are made unit). */
 #ifndef TREELINE_TESTS_NEEDLES_GOLDEN_H
 #define TREELINE_TESTS_NEEDLES_GOLDEN_H
@@ -136,6 +136,23 @@ static const struct golden_g8 {
     {9, {0.09040618058784787, 0.0086324246770010469}},
     {10, {0.016920693486128308, 0.0065547232050714574}},
     {11, {0.53154749413244107, 0.23481923275938993}},
+};
+
+/* G9: the paper's forms of a cone corrected, on the inputs of G2: (11) as a chord, both halves; (7) of pi/8, folded,
+ * without lambda_2, and (9) with its density, of the half toward the eye */
+static const struct golden_g9 {
+    double number, seen[2], diffuse, specular;
+} golden_g9[] = {
+    {1, {0.64618853631477446, 2.5626109234530472}, 0.12040643234461586, 0},
+    {2, {0.94246568236424866, 2.0379107973745811}, 0.31821745240970384, 0},
+    {3, {1.570796326794897, 1.570796326794897}, 0.43294333731875995, 0.16757321086979785},
+    {4, {0.57079632679489678, 2.5707963267948974}, 0.31699765768506388, 0},
+    {5, {1.309824938401293, 0.31220784873145752}, -0.093435793947828957, 0.095110568399827788},
+    {6, {0.93425993394647222, 2.1069004253487651}, 0.01815849509453463, 0},
+    {7, {1.2179577367116092, 2.4689030740022684}, 0.092774306076519486, 0},
+    {8, {1.8037171150861382, 2.3214359543290946}, 3.734796776011276e-16, 0.59443198512214623},
+    {9, {1.6234209447509969, 2.7253425613564932}, 0.23579209889200384, 0},
+    {10, {2.7490153484996931, 2.9172237035772515}, 1.5569821385944651, 0},
 };
 
 /* clang-format on */
