@@ -94,6 +94,8 @@ static void upload_volumes(struct workspace *workspace, struct state *state)
     for (size_t i = 0; i < species_count; i++) {
         const struct voxels *volume = state->volumes[i];
         memcpy(voxels + first, volume->voxels, volume->voxels_count * sizeof *voxels);
+        for (uint32_t v = 0; v < volume->voxels_count && mesh_is_solid(state->meshes[i]); v++)
+            voxels[first + v].color |= 15u << 28; /* needles are lit as bark is */
         for (uint32_t k = 0; k < volume->levels_count; k++) {
             const struct voxels_level *level = &volume->levels[k];
             size_t count = (size_t)level->size[0] * level->size[1] * level->size[2];

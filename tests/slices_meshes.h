@@ -16,7 +16,7 @@ static inline struct mesh *shape_new(struct arena *arena, size_t triangles, enum
     mesh->materials_count = mesh->parts_count = 1;
     mesh->materials = ARENA_NEW(arena, struct material);
     mesh->materials[0] =
-        (struct material){arena_strdup(arena, "one"), kind, {0.5f, 0.5f, 0.5f}, NULL};
+        (struct material){arena_strdup(arena, "one"), kind, {0.5f, 0.5f, 0.5f}, NULL, false};
     mesh->parts = ARENA_NEW(arena, struct mesh_part);
     return mesh;
 }

@@ -17,7 +17,7 @@ static struct mesh *new_mesh(struct arena *arena, size_t triangles, enum materia
     mesh->triangles = arena_alloc(arena, triangles, sizeof *mesh->triangles);
     mesh->parts = ARENA_NEW(arena, struct mesh_part);
     mesh->materials = ARENA_NEW(arena, struct material);
-    mesh->materials[0] = (struct material){"it", kind, {0.5f, 0.5f, 0.5f}, NULL};
+    mesh->materials[0] = (struct material){"it", kind, {0.5f, 0.5f, 0.5f}, NULL, false};
     mesh->parts_count = mesh->materials_count = 1;
     return mesh;
 }

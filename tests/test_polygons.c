@@ -84,7 +84,8 @@ static void add_leaves(struct arena *arena, struct mesh *mesh, size_t part, uint
         }
         add_quad(mesh, at, u, v);
     }
-    mesh->materials[part] = (struct material){"leaf", MATERIAL_LEAF, {0.5f, 0.9f, 0.4f}, NULL};
+    mesh->materials[part] =
+        (struct material){"leaf", MATERIAL_LEAF, {0.5f, 0.9f, 0.4f}, NULL, false};
 }
 
 /* A box of bark about the axis, closed and smooth: normals point from the axis, corners are shared.
@@ -113,7 +114,8 @@ static void add_trunk(struct mesh *mesh, size_t part, float half_m, float height
         mesh->triangles_count += 2;
     }
     mesh->vertices_count += 8;
-    mesh->materials[part] = (struct material){"bark", MATERIAL_BARK, {0.6f, 0.5f, 0.4f}, NULL};
+    mesh->materials[part] =
+        (struct material){"bark", MATERIAL_BARK, {0.6f, 0.5f, 0.4f}, NULL, false};
 }
 
 /* A trunk and leaves. */

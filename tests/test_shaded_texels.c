@@ -28,7 +28,7 @@ static struct plant *board_plant(struct arena *arena, int axis, float sign, enum
     mesh->materials_count = mesh->parts_count = 1;
     mesh->materials = ARENA_NEW(arena, struct material);
     *mesh->materials =
-        (struct material){arena_strdup(arena, "board"), kind, {0.6f, 0.3f, 0.1f}, NULL};
+        (struct material){arena_strdup(arena, "board"), kind, {0.6f, 0.3f, 0.1f}, NULL, false};
     mesh->parts = ARENA_NEW(arena, struct mesh_part);
     *mesh->parts = (struct mesh_part){.triangles_count = 2};
     if (kind == MATERIAL_LEAF) {
@@ -356,7 +356,8 @@ static void test_shaded_texels__terrain_in_front_hides_and_behind_does_not(void 
     float heights[4] = {-0.01f, -0.01f, -0.01f, -0.01f}, normals[4][3];
     for (int i = 0; i < 4; i++)
         normals[i][0] = normals[i][2] = 0, normals[i][1] = 1;
-    scene->terrain = (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}, NULL, 0};
+    scene->terrain =
+        (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}, NULL, 0};
     struct view view = tree_view(scene, 0.6f, 0.5f, 300, 9);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
     struct frame *drawn = tree_draw(f->arena, f->method, "resolution=64", scene, lit, &view, NULL);

@@ -72,10 +72,10 @@ static inline struct mesh *tree_mesh(struct arena *arena, uint32_t leaves)
     }
     mesh->materials_count = mesh->parts_count = 2;
     mesh->materials = ARENA_ARRAY(arena, struct material, 2);
-    mesh->materials[0] =
-        (struct material){arena_strdup(arena, "bark"), MATERIAL_BARK, {0.3f, 0.22f, 0.15f}, NULL};
-    mesh->materials[1] =
-        (struct material){arena_strdup(arena, "leaf"), MATERIAL_LEAF, {0.25f, 0.5f, 0.12f}, NULL};
+    mesh->materials[0] = (struct material){
+        arena_strdup(arena, "bark"), MATERIAL_BARK, {0.3f, 0.22f, 0.15f}, NULL, false};
+    mesh->materials[1] = (struct material){
+        arena_strdup(arena, "leaf"), MATERIAL_LEAF, {0.25f, 0.5f, 0.12f}, NULL, false};
     mesh->parts = ARENA_ARRAY(arena, struct mesh_part, 2);
     mesh->parts[0] = (struct mesh_part){.triangles_count = 2 * SIDES};
     mesh->parts[1] =

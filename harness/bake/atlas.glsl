@@ -4,7 +4,7 @@ uniform vec3 center_m;
 uniform vec4 window;     // clip = (s, t) * window.xy + window.zw
 uniform float radius_m;  // depths lie in [-radius_m, radius_m]
 uniform vec3 material_albedo;
-uniform float kind;      // 1 leaf, 2 bark
+uniform float kind;      // 1 leaf, 2 bark or needle
 uniform bool has_color, has_texture;
 
 #pragma stage vertex

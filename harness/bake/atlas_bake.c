@@ -148,7 +148,7 @@ static void render_tile(const struct kiln *kiln, const struct atlas_plant *plant
         const struct mesh_part *part = &mesh->parts[i];
         const struct material *material = &mesh->materials[part->material];
         gl->Uniform3fv(gl_uniform(gl, program, "material_albedo"), 1, material->albedo);
-        gl->Uniform1f(gl_uniform(gl, program, "kind"), material->kind == MATERIAL_LEAF ? 1 : 2);
+        gl->Uniform1f(gl_uniform(gl, program, "kind"), material_is_thin(material) ? 1 : 2);
         gl->Uniform1i(gl_uniform(gl, program, "has_texture"), kiln->textures[part->material] != 0);
         gl->BindTextureUnit(0, kiln->textures[part->material]);
         gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)(3 * part->triangles_count), GL_UNSIGNED_INT,

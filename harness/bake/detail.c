@@ -154,6 +154,18 @@ static enum material_kind part_kind(const struct mesh *mesh, size_t part)
     return mesh->materials[mesh->parts[part].material].kind;
 }
 
+static bool part_is_thin(const struct mesh *mesh, size_t part)
+{
+    return material_is_thin(&mesh->materials[mesh->parts[part].material]);
+}
+
+static bool parts_are_alike(const struct mesh *mesh, size_t a, size_t b)
+{
+    return part_texture(mesh, a) == part_texture(mesh, b) &&
+           part_kind(mesh, a) == part_kind(mesh, b) &&
+           part_is_thin(mesh, a) == part_is_thin(mesh, b);
+}
+
 /* A better order for the vertex cache, and bark from wide to thin. */
 static void order_indices(const struct detail *detail, enum material_kind kind, uint32_t *indices,
                           size_t count, size_t vertices_count)
@@ -163,7 +175,8 @@ static void order_indices(const struct detail *detail, enum material_kind kind, 
         stout_order(indices, count, detail->widths);
 }
 
-/* All parts of one kind and texture, from the first of them on. */
+/* All parts of one kind and texture, from the first of them on. That solid leaves are closed is
+ * what they are; bark is looked at. */
 static void pack_batch(struct packer *packer, struct arena *arena, size_t first_part)
 {
     const struct mesh *mesh = packer->mesh;
@@ -171,21 +184,25 @@ static void pack_batch(struct packer *packer, struct arena *arena, size_t first_
     const struct texture *texture = part_texture(mesh, first_part);
     enum material_kind kind = part_kind(mesh, first_part);
     for (size_t p = 0; p < first_part; p++)
-        if (part_texture(mesh, p) == texture && part_kind(mesh, p) == kind)
+        if (parts_are_alike(mesh, p, first_part))
             return;
     struct detail_batch *batch = &detail->batches[detail->batches_count++];
-    *batch = (struct detail_batch){.kind = kind, .texture = texture, .flat = true};
+    *batch = (struct detail_batch){
+        .kind = kind, .texture = texture, .thin = part_is_thin(mesh, first_part), .flat = true};
     batch->levels[0].first_index = (uint32_t)detail->indices_count;
     for (size_t p = first_part; p < mesh->parts_count; p++)
-        if (part_texture(mesh, p) == texture && part_kind(mesh, p) == kind)
+        if (parts_are_alike(mesh, p, first_part))
             pack_part(packer, &mesh->parts[p], batch);
     packer->ends[batch - detail->batches] = detail->vertices_count;
     uint32_t *indices = detail->indices + batch->levels[0].first_index;
     size_t count = batch->levels[0].indices_count;
-    batch->closed = kind == MATERIAL_BARK && !texture &&
-                    detail_is_closed(arena, (const float(*)[3])packer->positions,
-                                     detail->vertices_count, indices, count);
-    order_indices(detail, kind, indices, count, detail->vertices_count);
+    if (kind == MATERIAL_BARK)
+        batch->closed = !texture && detail_is_closed(arena, (const float(*)[3])packer->positions,
+                                                     detail->vertices_count, indices, count);
+    else
+        batch->closed = !texture && !batch->thin;
+    if (kind == MATERIAL_BARK || batch->thin) /* needles are in order, one after the other */
+        order_indices(detail, kind, indices, count, detail->vertices_count);
 }
 
 static size_t level_triangles(const struct detail *detail, size_t level)

@@ -22,6 +22,7 @@ struct detail_range {
 struct detail_batch {
     enum material_kind kind;
     const struct texture *texture; /* NULL: none */
+    bool thin;                     /* leaves that are not solid */
     bool flat;   /* every triangle has one colour, its normals are the geometric one: it may be lit
                     at any vertex */
     bool closed; /* a closed surface that faces outward: its back faces are never seen */

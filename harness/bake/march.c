@@ -51,6 +51,7 @@ static enum status species_fill(struct workspace *workspace, struct plant *plant
         species->voxels = voxels_visible(workspace->arena, species->voxels);
     *bound = cull_bound_of(mesh);
     species->mesh = mesh;
+    species->is_solid = mesh_is_solid(mesh);
     float square = 0;
     for (int i = 0; i < 3; i++) {
         float half = 0.5f * (mesh->maximum_m[i] - mesh->minimum_m[i]);

@@ -184,7 +184,8 @@ static void light_fill(const struct march_view *picture, const struct march_tree
     job->seen = job->hidden;
     job->lit = march_form_of(model, toward_sun, toward_sun);
     job->both = march_form_of(model, toward_eye, toward_sun);
-    job->one_sided = picture->effects & EFFECT_TWO_SIDED ? 0 : 1;
+    const bool thin = !picture->species[tree->species].is_solid;
+    job->one_sided = picture->effects & EFFECT_TWO_SIDED && thin ? 0 : 1;
     for (int c = 0; c < 3; c++) {
         float white = voxels->albedo[c] / 255;
         job->sun[c] = white * scene->sun.radiance[c];

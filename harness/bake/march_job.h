@@ -14,6 +14,7 @@ struct march_species {
     float center_m[3]; /* of the finest level's box, in the plant's axes */
     float half_m[3];   /* its half extents */
     float radius_m;    /* of a sphere around it that holds the plant */
+    bool is_solid;     /* its leaves are needles, lit on the outside alone */
 };
 
 struct march_shadows;

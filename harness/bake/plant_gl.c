@@ -66,6 +66,7 @@ void plant_gl_detail(struct workspace *workspace, const struct detail *detail,
         const struct detail_batch *from = &detail->batches[b];
         struct plant_gl_batch *batch = &plant->batches[b];
         *batch = (struct plant_gl_batch){.kind = from->kind,
+                                         .thin = from->thin,
                                          .flat = from->flat,
                                          .closed = from->closed,
                                          .texture =

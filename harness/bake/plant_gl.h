@@ -20,7 +20,7 @@ struct plant_gl_placed {
 struct plant_gl_batch {
     enum material_kind kind;
     GLuint texture; /* 0: none */
-    bool flat, closed;
+    bool thin, flat, closed;
     struct detail_range levels[DETAIL_LEVELS_MAX];
     struct detail_range stout[LEVELS_STEPS_MAX]; /* of bark, what is drawn with a step of pruning */
 };

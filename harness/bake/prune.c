@@ -3,17 +3,18 @@
 #include "bake/detail.h"
 #include "bake/stout.h"
 #include "base/random.h"
+#include "plant/normals.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Elements of more triangles (a branch of needles, a whole canopy of one piece) are taken apart. */
+/* Thin elements of more triangles (a whole canopy of one piece) are taken apart. */
 enum { ELEMENT_TRIANGLES_MAX = 4, TEXTURE_SAMPLES = 16, BARK_SAMPLES_MAX = 200000 };
 
 /* One element before packing. */
 struct element {
     float corners[3][3], center[3], normal[3], albedo[3];
-    bool leaf;
+    int16_t kind;   /* of leaves 32767, of needles -32767, of bark 0 */
     uint16_t width; /* of bark */
 };
 
@@ -101,13 +102,41 @@ static struct patch patch_of(struct pruner *pruner, uint32_t triangle,
     return patch;
 }
 
-static struct element *new_element(struct pruner *pruner, bool leaf, const double albedo[3])
+static struct element *new_element(struct pruner *pruner, int16_t kind, const double albedo[3])
 {
     struct element *element = &pruner->elements[pruner->count++];
-    element->leaf = leaf;
+    element->kind = kind;
     for (int i = 0; i < 3; i++)
         element->albedo[i] = (float)albedo[i];
     return element;
+}
+
+/* All triangles of a leaf, colour and position divided by the opaque area. largest: one of them and
+ * its area. */
+static struct patch patch_sum(struct pruner *pruner, uint32_t begin, uint32_t end,
+                              const struct material *material, uint32_t *largest,
+                              double *largest_area)
+{
+    struct patch sum = {0};
+    *largest = begin;
+    *largest_area = 0;
+    for (uint32_t t = begin; t < end; t++) {
+        struct patch patch = patch_of(pruner, t, material);
+        sum.opaque += patch.opaque;
+        for (int i = 0; i < 3; i++) {
+            sum.albedo[i] += patch.albedo[i];
+            sum.center[i] += patch.center[i];
+        }
+        if (patch.area > *largest_area) {
+            *largest_area = patch.area;
+            *largest = t;
+        }
+    }
+    for (int i = 0; i < 3 && sum.opaque > 0; i++) {
+        sum.albedo[i] /= sum.opaque;
+        sum.center[i] /= sum.opaque;
+    }
+    return sum;
 }
 
 /* A leaf of a few triangles: the largest of them, moved to the leaf's centre and scaled to its
@@ -116,28 +145,12 @@ static void add_leaf(struct pruner *pruner, uint32_t begin, uint32_t end,
                      const struct material *material)
 {
     const struct mesh *mesh = pruner->mesh;
-    struct patch sum = {0};
-    uint32_t largest = begin;
-    double largest_area = 0;
-    for (uint32_t t = begin; t < end; t++) {
-        struct patch patch = patch_of(pruner, t, material);
-        sum.opaque += patch.opaque;
-        for (int i = 0; i < 3; i++) {
-            sum.albedo[i] += patch.albedo[i];
-            sum.center[i] += patch.center[i];
-        }
-        if (patch.area > largest_area) {
-            largest_area = patch.area;
-            largest = t;
-        }
-    }
+    uint32_t largest;
+    double largest_area;
+    struct patch sum = patch_sum(pruner, begin, end, material, &largest, &largest_area);
     if (!(sum.opaque > 0))
         return;
-    for (int i = 0; i < 3; i++) {
-        sum.albedo[i] /= sum.opaque;
-        sum.center[i] /= sum.opaque;
-    }
-    struct element *element = new_element(pruner, true, sum.albedo);
+    struct element *element = new_element(pruner, INT16_MAX, sum.albedo);
     const uint32_t *corners = mesh->triangles[largest];
     float size = (float)sqrt(sum.opaque / largest_area);
     for (int axis = 0; axis < 3; axis++) {
@@ -154,12 +167,50 @@ static void add_leaf(struct pruner *pruner, uint32_t begin, uint32_t end,
     pruner->area_m2 += sum.opaque;
 }
 
+/* A closed, convex piece: one of its triangles, as often as it is large, in the piece's middle and
+ * scaled to half of the surface, which is what a flat piece shows in the mean over all directions
+ * when a convex one of that surface shows a quarter of it (Cauchy). Over many pieces their normals,
+ * turned to the eye, are those that the pieces' fronts show. */
+static void add_needle(struct pruner *pruner, uint32_t begin, uint32_t end,
+                       const struct material *material)
+{
+    const struct mesh *mesh = pruner->mesh;
+    uint32_t chosen;
+    double chosen_area, cross[3], at = 0;
+    struct patch sum = patch_sum(pruner, begin, end, material, &chosen, &chosen_area);
+    if (!(sum.opaque > 0))
+        return;
+    double place = sum.opaque * random_double(&pruner->random);
+    for (uint32_t t = begin; t < end && at <= place; t++) {
+        double area = mesh_triangle_area(mesh, t);
+        chosen = area > 0 ? t : chosen;
+        chosen_area = area > 0 ? area : chosen_area;
+        at += area;
+    }
+    struct element *element = new_element(pruner, -INT16_MAX, sum.albedo);
+    const float *p[3];
+    for (int i = 0; i < 3; i++)
+        p[i] = mesh->positions[mesh->triangles[chosen][i]];
+    triangle_cross(p[0], p[1], p[2], cross);
+    float size = (float)sqrt(0.5 * sum.opaque / chosen_area);
+    for (int axis = 0; axis < 3; axis++) {
+        float middle = (p[0][axis] + p[1][axis] + p[2][axis]) / 3;
+        element->normal[axis] = (float)(cross[axis] / (2 * chosen_area));
+        element->center[axis] = (float)sum.center[axis];
+        for (int i = 0; i < 3; i++)
+            element->corners[i][axis] = element->center[axis] + size * (p[i][axis] - middle);
+    }
+    pruner->area_m2 += 0.5 * sum.opaque;
+}
+
 static void add_leaves(struct pruner *pruner, const struct mesh_part *part)
 {
     const struct material *material = &pruner->mesh->materials[part->material];
     for (uint32_t e = 0; e < part->elements_count; e++) {
         uint32_t begin = part->element_first[e], end = part->element_first[e + 1];
-        if (end - begin <= ELEMENT_TRIANGLES_MAX && end > begin)
+        if (material->solid && end > begin)
+            add_needle(pruner, begin, end, material);
+        else if (end - begin <= ELEMENT_TRIANGLES_MAX && end > begin)
             add_leaf(pruner, begin, end, material);
         else
             for (uint32_t t = begin; t < end; t++)
@@ -202,7 +253,7 @@ static void add_sample(struct pruner *pruner, uint32_t triangle, const struct ma
     pruner->area_m2 += patch.opaque > 0 ? area : 0;
     if (!(patch.opaque > 0))
         return;
-    struct element *element = new_element(pruner, false, patch.albedo);
+    struct element *element = new_element(pruner, 0, patch.albedo);
     element->width = pruner->widths[corners[0]];
     float length = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -256,7 +307,7 @@ static void pack_elements(const struct pruner *pruner, const uint32_t *order, st
             memcpy(vertex->position_m, element->corners[corner], sizeof vertex->position_m);
             memcpy(vertex->center_m, element->center, sizeof vertex->center_m);
             detail_pack_normal(element->normal, vertex->normal);
-            vertex->normal[3] = element->leaf ? INT16_MAX : 0;
+            vertex->normal[3] = element->kind;
             detail_pack_albedo(element->albedo, vertex->albedo);
             vertex->albedo[3] = element->width;
         }

@@ -4,8 +4,9 @@
  * Cook, Halstead, Planck, Ryu 2007, Stochastic simplification of aggregate detail,
  * doi:10.1145/1276377.1276476: a random fraction f of the elements is kept and scaled to 1/f of its
  * area, so that the total area stays (eq. 2). Departures: a leaf is one triangle from the start,
- * and bark, which is no aggregate, is cut into samples of the leaves' mean area, so that one list
- * and one draw make a whole far tree. */
+ * a solid one (a needle) too, of half its surface as one sees it turned to and fro, and bark, which
+ * is no aggregate, is cut into samples of the leaves' mean area, so that one list and one draw make
+ * a whole far tree. */
 #ifndef TREELINE_BAKE_PRUNE_H
 #define TREELINE_BAKE_PRUNE_H
 
@@ -17,15 +18,15 @@
 struct prune_vertex {
     float position_m[3];
     float center_m[3];  /* of the element: position = center + grow * (position - center) */
-    int16_t normal[4];  /* snorm; w: 32767 leaf, 0 bark */
+    int16_t normal[4];  /* snorm; w: 32767 leaf, -32767 needle, 0 bark */
     uint16_t albedo[4]; /* unorm, texture included; w: of bark, its width, see stout.h */
 };
 
 struct prune {
     size_t count;                  /* elements */
     struct prune_vertex *vertices; /* 3 x count, in random order of elements */
-    double
-        area_m2; /* of all elements at scale 1: leaves' opaque area, one side; half of the bark's */
+    double area_m2; /* of all elements at scale 1: leaves' opaque area, one side; half of bark's and
+                       needles' */
 };
 
 /* The arena is best a passing one: it also holds what was needed on the way. */

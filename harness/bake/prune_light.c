@@ -45,8 +45,8 @@ void prune_mean_radiance(const struct prune_vertex *probes, size_t count,
             float area = raise(light->stretch, n);
             float toward_eye =
                 -(n[0] * view->forward[0] + n[1] * view->forward[1] + n[2] * view->forward[2]);
-            int leaf = probe->normal[3] > 0;
-            float d = lambert(view, leaf && two_sided, n, toward_eye),
+            int leaf = probe->normal[3] != 0, thin = probe->normal[3] > 0;
+            float d = lambert(view, thin && two_sided, n, toward_eye),
                   weight = area * fabsf(toward_eye);
             seen[leaf] += weight;
             for (int axis = 0; axis < 3; axis++) {

@@ -66,7 +66,7 @@ void shadow_trees_place(const struct instance *instance, const float point[3], f
     world_m[2] = instance->position_m[2] + (point[2] * c - point[0] * s);
 }
 
-static void place_normal(const struct instance *instance, const float normal[3], bool leaf,
+static void place_normal(const struct instance *instance, const float normal[3], bool thin,
                          int16_t packed[4])
 {
     float c = cosf(instance->rotation_rad), s = sinf(instance->rotation_rad);
@@ -75,14 +75,14 @@ static void place_normal(const struct instance *instance, const float normal[3],
     float length = sqrtf(turned[0] * turned[0] + turned[1] * turned[1] + turned[2] * turned[2]);
     for (int i = 0; i < 3; i++)
         packed[i] = (int16_t)lrintf(32767 * turned[i] / (length > 0 ? length : 1));
-    packed[3] = leaf ? 32767 : 0;
+    packed[3] = thin ? 32767 : 0;
 }
 
 static void fill_vertex(const struct mesh *mesh, const struct material *material,
                         const struct instance *instance, uint32_t from, struct vertex *to)
 {
     shadow_trees_place(instance, mesh->positions[from], to->position_m);
-    place_normal(instance, mesh->normals[from], material->kind == MATERIAL_LEAF, to->normal);
+    place_normal(instance, mesh->normals[from], material_is_thin(material), to->normal);
     for (int i = 0; i < 3; i++) {
         float albedo = material->albedo[i] * (mesh->colors ? mesh->colors[from][i] : 1);
         to->albedo[i] = (uint16_t)lrintf(65535 * fminf(1, fmaxf(0, albedo)));

@@ -11,22 +11,26 @@ bool sift_plant_possible(const struct mesh *mesh)
     return !textured;
 }
 
-static bool shares_corner(const uint32_t *a, const uint32_t *b)
+/* By their places: the sides of a needle have corners of their own. */
+static bool shares_corner(const struct detail_vertex *vertices, const uint32_t *a,
+                          const uint32_t *b)
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            if (a[i] == b[j])
+            if (memcmp(vertices[a[i]].position_m, vertices[b[j]].position_m,
+                       sizeof vertices->position_m) == 0)
                 return true;
     return false;
 }
 
 /* Leaves: triangles that follow each other and share a corner are one element. */
-static size_t find_elements(const uint32_t *indices, size_t triangles, bool leaf, uint32_t *first)
+static size_t find_elements(const struct detail_vertex *vertices, const uint32_t *indices,
+                            size_t triangles, bool leaf, uint32_t *first)
 {
     size_t count = 0;
     for (size_t t = 0; t < triangles; t++) {
         bool goes_on = leaf && t > 0 && t - first[count - 1] < SIFT_TRIANGLES &&
-                       shares_corner(indices + 3 * t, indices + 3 * (t - 1));
+                       shares_corner(vertices, indices + 3 * t, indices + 3 * (t - 1));
         if (!goes_on)
             first[count++] = (uint32_t)t;
     }
@@ -42,18 +46,18 @@ static struct sift_set *set_of_range(struct arena *arena, const struct detail *d
     struct arena *passing = arena_create(0);
     const uint32_t *indices = detail->indices + range.first_index;
     uint32_t *first = ARENA_ARRAY(passing, uint32_t, range.indices_count / 3 + 1);
-    size_t count = find_elements(indices, range.indices_count / 3, leaf, first);
+    size_t count = find_elements(detail->vertices, indices, range.indices_count / 3, leaf, first);
     struct sift_vertex *vertices = ARENA_ARRAY(arena, struct sift_vertex, range.indices_count);
     for (uint32_t i = 0; i < range.indices_count; i++) {
         const struct detail_vertex *from = &detail->vertices[indices[i]];
         memcpy(vertices[i].position_m, from->position_m, sizeof from->position_m);
         memcpy(vertices[i].normal, from->normal, sizeof from->normal);
         memcpy(vertices[i].albedo, from->albedo, sizeof from->albedo);
-        vertices[i].normal[3] = leaf;
+        vertices[i].normal[3] = (int16_t)(leaf + (batch->thin ? 0 : SIFT_SOLID));
     }
     struct sift_set *set = sift_set_create(arena, vertices, count, first, NULL);
     set->closed = batch->closed;
-    set->stream = !leaf ? SIFT_BARK : batch->flat ? SIFT_LIT : SIFT_LEAF;
+    set->stream = leaf && batch->flat ? SIFT_LIT : batch->thin ? SIFT_LEAF : SIFT_BARK;
     arena_destroy(passing);
     return set;
 }
@@ -68,7 +72,8 @@ static struct sift_set *set_of_pruned(struct arena *arena, const struct prune *p
         memcpy(vertices[i].position_m, from->position_m, sizeof from->position_m);
         memcpy(vertices[i].normal, from->normal, sizeof from->normal);
         memcpy(vertices[i].albedo, from->albedo, sizeof from->albedo);
-        vertices[i].normal[3] = from->normal[3] > 0;
+        vertices[i].normal[3] =
+            (int16_t)((from->normal[3] != 0) + (from->normal[3] < 0 ? SIFT_SOLID : 0));
         memcpy(centers[i / 3], from->center_m, sizeof *centers);
     }
     struct sift_set *set =

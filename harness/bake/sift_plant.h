@@ -22,7 +22,10 @@ struct sift_plant {
 /* Textures cannot be sifted: false when a batch has one. */
 bool sift_plant_possible(const struct mesh *mesh);
 
-/* prune: NULL for none. normal.w is 1 for leaves, 0 for bark. */
+/* In normal.w, beside its mean: lit as bark is, not as a thin leaf. Even, and above every mean. */
+enum { SIFT_SOLID = 8192 };
+
+/* prune: NULL for none. normal.w is 1 for leaves, 0 for bark, and SIFT_SOLID what is not thin. */
 struct sift_plant *sift_plant_create(struct arena *arena, const struct detail *detail,
                                      const struct prune *prune, const struct levels *levels);
 

@@ -9,7 +9,7 @@
 /* How a hit looks. */
 struct look {
     float color[3], normal[3];
-    bool leaf;
+    bool leaf; /* a thin one: needles are lit as bark is */
 };
 
 static int slab_of(const struct slices_sight *sight, const struct raster_hit *hit)
@@ -48,7 +48,7 @@ static bool look_at(const struct slices_sight *sight, uint32_t triangle, int i, 
         }
         look->color[k] *= mesh->colors ? tint : 1;
     }
-    look->leaf = material->kind == MATERIAL_LEAF;
+    look->leaf = material_is_thin(material);
     const float *toward = sight->stack->toward;
     float length = sqrtf(slices_dot(normal, normal)), along = slices_dot(normal, toward);
     bool facing = raster_area(&sight->plane, triangle) > 0;

@@ -71,18 +71,36 @@ static void walk_bark(struct piece *pieces, const struct mesh *mesh, const uint3
     }
 }
 
+/* Vertices up to the last that bark has: a conifer's needles have a hundred times as many behind.
+ */
+static size_t bark_vertices(const struct mesh *mesh)
+{
+    size_t end = 0;
+    for (size_t p = 0; p < mesh->parts_count; p++) {
+        const struct mesh_part *part = &mesh->parts[p];
+        bool bark = mesh->materials[part->material].kind == MATERIAL_BARK;
+        for (uint32_t t = 0; bark && t < part->triangles_count; t++)
+            for (int i = 0; i < 3; i++) {
+                size_t vertex = mesh->triangles[part->first_triangle + t][i];
+                end = vertex >= end ? vertex + 1 : end;
+            }
+    }
+    return end;
+}
+
 uint16_t *stout_widths(struct arena *arena, const struct mesh *mesh)
 {
     uint16_t *widths = ARENA_ARRAY(arena, uint16_t, mesh->vertices_count);
+    size_t count = bark_vertices(mesh);
     struct arena *passing = arena_create(0);
-    uint32_t *welded = ARENA_ARRAY(passing, uint32_t, mesh->vertices_count);
-    struct piece *pieces = ARENA_ARRAY(passing, struct piece, mesh->vertices_count);
-    simplify_weld((const float(*)[3])mesh->positions, mesh->vertices_count, welded);
-    for (size_t i = 0; i < mesh->vertices_count; i++)
+    uint32_t *welded = ARENA_ARRAY(passing, uint32_t, count);
+    struct piece *pieces = ARENA_ARRAY(passing, struct piece, count);
+    simplify_weld((const float(*)[3])mesh->positions, count, welded);
+    for (size_t i = 0; i < count; i++)
         pieces[i].parent = (uint32_t)i;
     walk_bark(pieces, mesh, welded, false);
     walk_bark(pieces, mesh, welded, true);
-    for (size_t i = 0; i < mesh->vertices_count; i++) {
+    for (size_t i = 0; i < count; i++) {
         const struct piece *piece = &pieces[piece_root(pieces, welded[i])];
         float length = 0;
         for (int axis = 0; axis < 3; axis++) {

@@ -23,10 +23,9 @@ float triangles_taper(const struct triangles *triangles)
 
 int triangles_variant(const struct triangles *triangles, const struct plant_gl_batch *batch)
 {
-    bool leaf = batch->kind == MATERIAL_LEAF;
     if (batch->texture)
-        return leaf ? VARIANT_LEAF_TEXTURED : VARIANT_BARK_TEXTURED;
-    if (leaf)
+        return batch->thin ? VARIANT_LEAF_TEXTURED : VARIANT_BARK_TEXTURED;
+    if (batch->thin)
         return batch->flat && !triangles->request.shadows ? VARIANT_LEAF_LIT : VARIANT_LEAF;
     return VARIANT_BARK;
 }

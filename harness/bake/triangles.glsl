@@ -10,7 +10,7 @@
 #endif
 #pragma stage vertex
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, 0 bark; SIFTED: (the tree's first mean + leaf) / 32767
+layout(location = 1) in vec4 normal;  // w: of pruned elements, 1 leaf, -1 needle, 0 bark; SIFTED: (the tree's first mean + leaf, + 8192 of a needle) / 32767
 layout(location = 2) in vec4 albedo;  // w: SIFTED, 1 / growth; PRUNED, of bark, its width
 #ifdef TEXTURED
 layout(location = 3) in vec2 uv;
@@ -47,17 +47,18 @@ void main()
     float rank = float(gl_VertexID / 3) - run.x;
     rank += rank < 0.0 ? elements : 0.0;
     float keep = taper > 0.0 ? clamp((turn.z - rank - 0.5) / (taper * turn.z), 0.0, 1.0) : 1.0;
-    bool leaf = normal.w > 0.5;
+    bool leaf = abs(normal.w) > 0.5, thin = normal.w > 0.5;
     float grow = turn.w;
     keep = leaf || albedo.w < run.y ? keep : 0.0;
     local = center + (position - center) * (grow * keep);
 #elif defined(SIFTED)
     int owner = int(round(normal.w * 32767.0));
-    bool leaf = (owner & 1) == 1;
+    bool thin = (owner & 8193) == 1;
+    owner &= 8191;
 #elif defined(LEAF)
-    const bool leaf = true;
+    const bool thin = true;
 #else
-    const bool leaf = false;
+    const bool thin = false;
 #endif
 #ifdef SIFTED
     vec3 world = position;
@@ -71,7 +72,7 @@ void main()
 #ifdef SHADOWED
     sun_visibility = shadow_visibility(world, n);
 #endif
-    vec3 lit = leaf ? shade_leaf(albedo.rgb, n, facing) : shade_bark(albedo.rgb, n, facing);
+    vec3 lit = thin ? shade_leaf(albedo.rgb, n, facing) : shade_bark(albedo.rgb, n, facing);
     // One element stands for grow^2: the mean of so many varies grow times less (Cook et al. 2007, 3.3).
 #if defined(PRUNED)
     if (level_contrast)

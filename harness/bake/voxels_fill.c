@@ -14,8 +14,8 @@ struct corner {
 
 struct facet {
     struct corner corners[3];
-    float normal[3]; /* unit, geometric */
-    bool is_bark;
+    float normal[3];        /* unit, geometric */
+    bool is_bark, is_solid; /* solid: bark and needles, of which half faces away */
     const struct material *material;
 };
 
@@ -91,7 +91,7 @@ static void deposit(struct arena *arena, struct voxel_grid *grid, const struct f
     const float *n = facet->normal;
     /* A ray along an axis stands for 1 / |n_axis| of its spacing squared; the three axes' rays
      * together, each by its n_axis squared, count every area once. */
-    float area = fabsf(n[axis]) / (VOXEL_RAYS * VOXEL_RAYS) * (facet->is_bark ? 0.5f : 1.0f);
+    float area = fabsf(n[axis]) / (VOXEL_RAYS * VOXEL_RAYS) * (facet->is_solid ? 0.5f : 1.0f);
     mass->area += area;
     mass->bark += facet->is_bark ? area : 0;
     const float products[6] = {n[0] * n[0], n[1] * n[1], n[2] * n[2],
@@ -152,6 +152,7 @@ static bool facet_of(const struct mesh *mesh, const struct mesh_part *part, size
     const float *p[3];
     facet->material = &mesh->materials[part->material];
     facet->is_bark = facet->material->kind == MATERIAL_BARK;
+    facet->is_solid = !material_is_thin(facet->material);
     for (int k = 0; k < 3; k++) {
         struct corner *corner = &facet->corners[k];
         p[k] = mesh->positions[corners[k]];

@@ -8,7 +8,8 @@ enum { VOXEL_RAYS = 8 }; /* along a voxel's side */
 
 /* What a voxel holds. Areas in units of the finest voxels' faces. */
 struct voxel_mass {
-    float area, bark; /* of all, of bark; bark's back faces hide nothing and count half */
+    float area, bark; /* of all, of bark; back faces of bark and needles hide nothing and count
+                         half */
     float moments[6]; /* sum of area n n': xx, yy, zz, xy, xz, yz */
     float facing[3];  /* sum of area |n_i| */
     float albedo[3];  /* sum of area x albedo */

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "wall/gl.h"
 
-#define METHOD_ABI 4u
+#define METHOD_ABI 5u
 
 /* What a method is and which effects it models. The low bits are EFFECT_*. */
 enum {

@@ -81,9 +81,11 @@ void conifer_bark(const struct conifer *conifer, struct conifer_piece *pieces);
 void conifer_needles(const struct conifer *conifer, struct conifer_piece *pieces);
 
 /* The polygons: capped prisms whose mean silhouette over all directions is that of the round pieces
- * (Cauchy: a convex section of the same perimeter), with the round pieces' normals on their sides.
- * One part of bark, then one of leaves (left out where there is no needle) in which an element is a
- * needle. It passes mesh_check. */
+ * (Cauchy: a convex section of the same perimeter). Bark has the round pieces' normals; needles,
+ * which are narrower than pixels, are flat: over many azimuths a prism's sides, each lit as a
+ * plane, shine as the round needle does, where round normals on three sides would show what faces
+ * away. One part of bark, then one of leaves (left out where there is no needle) in which an
+ * element is a needle, solid. It passes mesh_check. */
 struct mesh *conifer_mesh(struct arena *arena, const struct conifer *conifer);
 
 #endif

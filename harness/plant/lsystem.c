@@ -294,7 +294,7 @@ enum status lsystem_parse(struct arena *arena, const char *text, const char *whe
     error = error ? error : &local;
     struct lsystem *made = ARENA_NEW(arena, struct lsystem);
     made->where = arena_strdup(arena, where);
-    made->file_hash = hash_text(hash_text(0, "lsystem 3"), text);
+    made->file_hash = hash_text(hash_text(0, "lsystem 5"), text);
     struct json_doc *doc = json_parse(arena, text, made->where, error);
     if (!doc)
         return error->status;

@@ -20,7 +20,14 @@ struct material {
     float albedo[3]; /* linear RGB in [0, 1]; multiplies vertex colours and texture */
     const struct texture
         *texture; /* NULL: none. Wraps; bilinear; a texel is opaque from alpha 0.5 on */
+    bool solid;   /* of a leaf: closed pieces that face outward (needles), lit as bark is */
 };
+
+/* Whether both sides are lit alike where the scene wants that (EFFECT_TWO_SIDED). */
+static inline bool material_is_thin(const struct material *material)
+{
+    return material->kind == MATERIAL_LEAF && !material->solid;
+}
 
 /* A run of triangles of one material. */
 struct mesh_part {
@@ -48,5 +55,14 @@ struct mesh {
     float minimum_m[3], maximum_m[3]; /* bounding box */
     float radius_m; /* of the smallest cylinder about the +y axis that holds the mesh */
 };
+
+/* Whether it has no leaves that are lit on both sides. */
+static inline bool mesh_is_solid(const struct mesh *mesh)
+{
+    for (size_t i = 0; i < mesh->materials_count; i++)
+        if (material_is_thin(&mesh->materials[i]))
+            return false;
+    return true;
+}
 
 #endif

@@ -202,6 +202,7 @@ static uint64_t hash_mesh(const struct mesh *mesh)
     for (size_t i = 0; i < mesh->materials_count; i++) {
         const struct material *m = &mesh->materials[i];
         hash = hash_bytes(hash_u64(hash, m->kind), m->albedo, sizeof m->albedo);
+        hash = m->solid ? hash_text(hash, "solid") : hash;
         const struct texture *t = m->texture;
         if (t) {
             hash = hash_u64(hash_u64(hash, (uint64_t)t->width_px), (uint64_t)t->height_px);
@@ -214,7 +215,7 @@ static uint64_t hash_mesh(const struct mesh *mesh)
 
 static uint64_t hash_conifer(const struct conifer *conifer)
 {
-    uint64_t hash = hash_text(0, "conifer");
+    uint64_t hash = hash_text(0, "conifer 3");
     hash = hash_bytes(hash, conifer->branches, conifer->branches_count * sizeof *conifer->branches);
     hash = hash_bytes(hash, conifer->twigs, conifer->twigs_count * sizeof *conifer->twigs);
     hash = hash_bytes(hash, conifer->needle_albedo, sizeof conifer->needle_albedo);

@@ -69,7 +69,7 @@ static void surface_set(struct arena *arena, struct surface *surface, const stru
     *surface = (struct surface){
         .mesh = mesh,
         .first_triangle = part->first_triangle,
-        .leaf = material->kind == MATERIAL_LEAF,
+        .leaf = material_is_thin(material),
         .plant = plant,
         .flat = part_is_flat(mesh, part),
         .tints = mesh->colors ? part_tints(arena, mesh, part) : NULL,
