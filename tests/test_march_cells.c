@@ -256,8 +256,8 @@ test_march_cells__trees_of_a_few_pixels_show_the_mean_of_what_is_in_a_pixel(void
 }
 
 /* The share of the light from trees that is left by the shadows that they cast; the ground is
- * black. A far picture takes one mean over a tree, so within half of what other trees take (.16).
- */
+ * black. A far picture takes one mean over a tree, so within a quarter of what other trees take
+ * (.40). */
 static void test_march_cells__trees_of_a_few_pixels_are_as_dark_in_shadow_as_marched(void **state)
 {
     (void)state;
@@ -276,7 +276,7 @@ static void test_march_cells__trees_of_a_few_pixels_are_as_dark_in_shadow_as_mar
         }
         left[far] = light[1] / light[0];
     }
-    if (!(left[0] < 0.9 && fabs(left[1] - left[0]) < 0.08))
+    if (!(left[0] < 0.9 && fabs(left[1] - left[0]) < 0.1))
         fail_msg("%g of the light left in far pictures, %g marched", left[1], left[0]);
     arena_destroy(world.arena);
 }
