@@ -85,7 +85,7 @@ static void test_conifers__needles_shine_at_every_level_as_traced(void **state)
                                    0);
         }
         traced = level < 0 ? light[1] - light[0] : traced;
-        if (!(fabs((light[1] - light[0]) / traced - 1) < 0.3) || !(traced > 0.1 * light[0]))
+        if (!(fabs((light[1] - light[0]) / traced - 1) < 0.12) || !(traced > 0.1 * light[0]))
             fail_msg("level %d: shines by %.4f of %.4f, traced %.4f", level, light[1] - light[0],
                      light[0], traced);
         arena_destroy(world.arena);

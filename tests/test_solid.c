@@ -87,9 +87,9 @@ static void test_needles__are_lit_on_their_outside_alone_by_every_method(void **
     arena_destroy(arena);
 }
 
-/* What stands for a needle has half of its surface, faces away from the needle as one of its sides
- * does, and all of them together to every side of the twig. */
-static void test_prune__makes_one_triangle_of_a_needle_of_half_its_surface(void **state)
+/* What stands for needles has half of their surface, each faces as a side does, and all of them
+ * together every way. */
+static void test_prune__makes_triangles_of_half_its_surface_of_a_needle(void **state)
 {
     (void)state;
     struct arena *arena = arena_create(0);
@@ -122,7 +122,7 @@ static void test_prune__makes_one_triangle_of_a_needle_of_half_its_surface(void 
         area += sqrt(square) / 2;
         count++;
     }
-    assert_true(count == (double)conifer->needles_count);
+    assert_true(count == 2 * (double)conifer->needles_count);
     assert_true(fabs(area / surface - 0.5) < 1e-3);
     for (int axis = 0; axis < 3; axis++)
         assert_true(fabs(mean[axis]) / count < 0.03);
@@ -133,7 +133,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_needles__are_lit_on_their_outside_alone_by_every_method),
-        cmocka_unit_test(test_prune__makes_one_triangle_of_a_needle_of_half_its_surface),
+        cmocka_unit_test(test_prune__makes_triangles_of_half_its_surface_of_a_needle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

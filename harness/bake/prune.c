@@ -9,7 +9,12 @@
 #include <string.h>
 
 /* Thin elements of more triangles (a whole canopy of one piece) are taken apart. */
-enum { ELEMENT_TRIANGLES_MAX = 4, TEXTURE_SAMPLES = 16, BARK_SAMPLES_MAX = 200000 };
+enum {
+    ELEMENT_TRIANGLES_MAX = 4,
+    NEEDLE_ELEMENTS = 2,
+    TEXTURE_SAMPLES = 16,
+    BARK_SAMPLES_MAX = 200000
+};
 
 /* One element before packing. */
 struct element {
@@ -23,8 +28,8 @@ struct pruner {
     struct random random;
     size_t count, room;
     struct element *elements;
-    double area_m2;
-    uint16_t *widths; /* of the mesh's vertices */
+    double area_m2, hidden_m2; /* hidden: half of the needles', which no element has */
+    uint16_t *widths;          /* of the mesh's vertices */
 };
 
 /* What is seen of a triangle: its opaque area, and albedo and position weighted by it. */
@@ -122,6 +127,7 @@ static struct patch patch_sum(struct pruner *pruner, uint32_t begin, uint32_t en
     *largest_area = 0;
     for (uint32_t t = begin; t < end; t++) {
         struct patch patch = patch_of(pruner, t, material);
+        sum.area += patch.area;
         sum.opaque += patch.opaque;
         for (int i = 0; i < 3; i++) {
             sum.albedo[i] += patch.albedo[i];
@@ -167,40 +173,48 @@ static void add_leaf(struct pruner *pruner, uint32_t begin, uint32_t end,
     pruner->area_m2 += sum.opaque;
 }
 
-/* A closed, convex piece: one of its triangles, as often as it is large, in the piece's middle and
- * scaled to half of the surface, which is what a flat piece shows in the mean over all directions
- * when a convex one of that surface shows a quarter of it (Cauchy). Over many pieces their normals,
- * turned to the eye, are those that the pieces' fronts show. */
-static void add_needle(struct pruner *pruner, uint32_t begin, uint32_t end,
-                       const struct material *material)
+/* One triangle of a closed, convex piece, each as likely as it is large, scaled to an area. Over
+ * many pieces their normals, turned to the eye, are those that the pieces' fronts show. */
+static void add_side(struct pruner *pruner, uint32_t begin, uint32_t end, const struct patch *sum,
+                     double area)
 {
     const struct mesh *mesh = pruner->mesh;
-    uint32_t chosen;
-    double chosen_area, cross[3], at = 0;
-    struct patch sum = patch_sum(pruner, begin, end, material, &chosen, &chosen_area);
-    if (!(sum.opaque > 0))
-        return;
-    double place = sum.opaque * random_double(&pruner->random);
+    double place = sum->area * random_double(&pruner->random), at = 0, chosen_area = 0, cross[3];
+    uint32_t chosen = begin;
     for (uint32_t t = begin; t < end && at <= place; t++) {
-        double area = mesh_triangle_area(mesh, t);
-        chosen = area > 0 ? t : chosen;
-        chosen_area = area > 0 ? area : chosen_area;
-        at += area;
+        double of_this = mesh_triangle_area(mesh, t);
+        chosen = of_this > 0 ? t : chosen;
+        chosen_area = of_this > 0 ? of_this : chosen_area;
+        at += of_this;
     }
-    struct element *element = new_element(pruner, -INT16_MAX, sum.albedo);
+    struct element *element = new_element(pruner, -INT16_MAX, sum->albedo);
     const float *p[3];
     for (int i = 0; i < 3; i++)
         p[i] = mesh->positions[mesh->triangles[chosen][i]];
     triangle_cross(p[0], p[1], p[2], cross);
-    float size = (float)sqrt(0.5 * sum.opaque / chosen_area);
+    float size = (float)sqrt(area / chosen_area);
     for (int axis = 0; axis < 3; axis++) {
         float middle = (p[0][axis] + p[1][axis] + p[2][axis]) / 3;
         element->normal[axis] = (float)(cross[axis] / (2 * chosen_area));
-        element->center[axis] = (float)sum.center[axis];
+        element->center[axis] = middle;
         for (int i = 0; i < 3; i++)
-            element->corners[i][axis] = element->center[axis] + size * (p[i][axis] - middle);
+            element->corners[i][axis] = middle + size * (p[i][axis] - middle);
     }
-    pruner->area_m2 += 0.5 * sum.opaque;
+}
+
+/* A closed, convex piece: some of its triangles, as large together as half of the surface. That is
+ * what flat pieces show half of in the mean over all directions, when a convex one shows a quarter
+ * of its own (Cauchy). */
+static void add_needle(struct pruner *pruner, uint32_t begin, uint32_t end,
+                       const struct material *material)
+{
+    uint32_t largest;
+    double largest_area;
+    struct patch sum = patch_sum(pruner, begin, end, material, &largest, &largest_area);
+    for (int k = 0; k < NEEDLE_ELEMENTS && sum.opaque > 0; k++)
+        add_side(pruner, begin, end, &sum, 0.5 * sum.opaque / NEEDLE_ELEMENTS);
+    pruner->area_m2 += sum.opaque;
+    pruner->hidden_m2 += 0.5 * sum.opaque;
 }
 
 static void add_leaves(struct pruner *pruner, const struct mesh_part *part)
@@ -331,7 +345,8 @@ struct prune *prune_create(struct arena *arena, const struct mesh *mesh, uint64_
         else
             bark_triangles += mesh->parts[p].triangles_count;
     if (bark > 0) {
-        double mean = pruner.count ? pruner.area_m2 / (double)pruner.count : 0;
+        double shown = pruner.area_m2 - pruner.hidden_m2;
+        double mean = pruner.count ? shown / (double)pruner.count : 0;
         double wanted = mean > 0 ? ceil(bark / mean) : (double)bark_triangles;
         size_t samples = (size_t)fmin(fmax(wanted, 1), BARK_SAMPLES_MAX);
         add_bark(&pruner, samples, 2 * bark / (double)samples, bark / (double)samples);

@@ -4,8 +4,8 @@
  * Cook, Halstead, Planck, Ryu 2007, Stochastic simplification of aggregate detail,
  * doi:10.1145/1276377.1276476: a random fraction f of the elements is kept and scaled to 1/f of its
  * area, so that the total area stays (eq. 2). Departures: a leaf is one triangle from the start,
- * a solid one (a needle) too, of half its surface as one sees it turned to and fro, and bark, which
- * is no aggregate, is cut into samples of the leaves' mean area, so that one list and one draw make
+ * a solid one (a needle) two of its sides, of half its surface together, and bark, which is no
+ * aggregate, is cut into samples of the leaves' mean area, so that one list and one draw make
  * a whole far tree. */
 #ifndef TREELINE_BAKE_PRUNE_H
 #define TREELINE_BAKE_PRUNE_H
@@ -25,8 +25,9 @@ struct prune_vertex {
 struct prune {
     size_t count;                  /* elements */
     struct prune_vertex *vertices; /* 3 x count, in random order of elements */
-    double area_m2; /* of all elements at scale 1: leaves' opaque area, one side; half of bark's and
-                       needles' */
+    /* What a run's number of elements goes by: leaves' opaque area, one side; half of the bark's;
+     * all of the needles', of which the elements are half as large: their grain shows more. */
+    double area_m2;
 };
 
 /* The arena is best a passing one: it also holds what was needed on the way. */
