@@ -87,6 +87,68 @@ static void test_shaders__stay_in_range_at_every_end(void **state)
             }
 }
 
+/* Largest difference of what is seen and lit of a needle and of a twig, in float and in double. */
+static double rounding_of(const float axis[3], float phi, float density, const float light[3],
+                          const float eye[3], float exponent)
+{
+    double a[3], l[3], e[3], most = 0;
+    for (int c = 0; c < 3; c++)
+        a[c] = (double)axis[c], l[c] = (double)light[c], e[c] = (double)eye[c];
+    const float spacing = 2 * 16 * 0.01f / ((float)PI * density) * 0.02f;
+    const struct needles_twig twig = needles_twig_of(phi, 16, 0.02f, 0.0002f, spacing);
+    const struct needles_twig_double twig_double =
+        needles_twig_of_double((double)phi, 16, (double)0.02f, (double)0.0002f, (double)spacing);
+    const struct needles_sight sight = needles_sight_of(light, eye, exponent, false);
+    const struct needles_sight_double sight_double =
+        needles_sight_of_double(l, e, (double)exponent, false);
+    const struct needles_shade needle = needles_needle_shade(axis, 0.02f, 0.0002f, &sight, 1e-4f);
+    const struct needles_shade_double needle_double = needles_needle_shade_double(
+        a, (double)0.02f, (double)0.0002f, &sight_double, (double)1e-4f);
+    const struct needles_twig_shade whole = needles_twig_shade(&twig, &sight, false);
+    const struct needles_twig_shade_double whole_double =
+        needles_twig_shade_double(&twig_double, &sight_double, false);
+    const double differences[] = {
+        (double)needle.opacity - needle_double.opacity,
+        (double)needle.diffuse - needle_double.diffuse,
+        (double)needle.specular - needle_double.specular,
+        (double)whole.all.opacity - whole_double.all.opacity,
+        (double)whole.all.diffuse - whole_double.all.diffuse,
+        (double)whole.all.specular - whole_double.all.specular,
+    };
+    for (size_t k = 0; k < COUNT(differences); k++)
+        most = fmax(most, isfinite(differences[k]) ? fabs(differences[k]) : INFINITY);
+    return most;
+}
+
+/* A needle along the eye or the light, light from behind or before, rays along the twig, needles
+ * along it and across it, thin and thick ones, lobes of every width. */
+static void test_shaders__at_every_end_are_in_float_as_in_double(void **state)
+{
+    (void)state;
+    static const float phis[] = {0, 1e-4f, 0.7f, (float)(PI / 2)};
+    static const float densities[] = {1e-6f, 0.3f, 100};
+    for (size_t i = 0; i < COUNT(angles); i++)
+        for (size_t j = 0; j < COUNT(phis); j++)
+            for (int k = 0; k < 4; k++)
+                for (size_t n = 0; n < COUNT(exponents); n++) {
+                    float eye[3], light[3], axis[3];
+                    if (k == 2 && exponents[n] == 0)
+                        continue; /* of a needle along both that lobe has no direction */
+                    direction_of(angles[i], 1, eye);
+                    direction_of(angles[COUNT(angles) - 1 - i], 1.3, light);
+                    direction_of(0.4, 0.2, axis);
+                    for (int c = 0; c < 3; c++) {
+                        light[c] = k == 1 ? -eye[c] : k == 2 ? eye[c] : light[c];
+                        axis[c] = j == 0 ? eye[c] : j == 1 ? light[c] : axis[c];
+                    }
+                    const double most = rounding_of(axis, phis[j], densities[(i + n) % 3], light,
+                                                    eye, (float)exponents[n]);
+                    if (!(most < 0.01)) /* 0.005 along dense twigs */
+                        fail_msg("eye at %g, phi %g, light %d, exponent %g: float is off by %.3g",
+                                 angles[i], (double)phis[j], k, exponents[n], most);
+                }
+}
+
 /* A highlight that passes through the caustic, where the paper's line of needles square to H ends.
  */
 static void test_cone__shines_without_a_jump_through_the_caustic(void **state)
@@ -203,6 +265,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shaders__stay_in_range_at_every_end),
+        cmocka_unit_test(test_shaders__at_every_end_are_in_float_as_in_double),
         cmocka_unit_test(test_cone__shines_without_a_jump_through_the_caustic),
         cmocka_unit_test(test_twig__changes_little_where_little_changes),
         cmocka_unit_test(test_twig__in_float_is_as_in_double),
