@@ -10,14 +10,12 @@ struct options {
 
 /* clang-format off */
 static const struct option option_table[] = {
-    OPTION_WORD(struct options, samples, 0, "1|4|16",
-        "samples a pixel: 4 are multisampled, 16 too where the driver has them, else 4 in 2 x 2 texels"),
+    SAMPLING_OPTION(struct options, 0),
     OPTION(struct options, azimuths, 64, 1, SKYLINE_AZIMUTHS_MOST, "",
         "directions that the horizon is known in"),
     OPTION_WORD(struct options, lookup, 0, "mixed|nearest",
         "the horizon toward the sun from the two directions beside it, or the nearest one's, as published"),
-    OPTION(struct options, triangles, 524288, 10000, 8388608, "",
-        "that all trees may have together; more are refused: each is drawn twice and casts a volume in every frame"),
+    SHADOW_PASSES_TRIANGLES(struct options),
     OPTION_END,
 };
 /* clang-format on */
@@ -25,23 +23,12 @@ static const struct option option_table[] = {
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
                            const void *values, void **state)
 {
-    static const int samples_of_word[] = {1, 4, 16};
     const struct options *options = values;
-    struct shadow_passes *passes = NULL;
-    struct shadow_passes_request request = {
-        .samples = samples_of_word[options->samples],
-        .triangles_most = options->triangles,
-        .azimuths = options->azimuths,
-        .mixed = options->lookup == 0};
-    enum status status = shadow_passes_prepare(workspace, scene, &request, &passes);
-    *state = passes;
-    return status;
-}
-
-static enum status draw(struct workspace *workspace, void *state, const struct view *view,
-                        struct target *target)
-{
-    return shadow_passes_draw(workspace, state, view, target);
+    struct shadow_passes_request request = {.samples = sampling_count(options->samples),
+                                            .triangles_most = options->triangles,
+                                            .azimuths = options->azimuths,
+                                            .mixed = options->lookup == 0};
+    return shadow_passes_prepare(workspace, scene, &request, state);
 }
 
 extern const struct method horizon_map_method;
@@ -49,13 +36,13 @@ const struct method horizon_map_method = {
     .abi = METHOD_ABI,
     .name = "horizon-map",
     .summary = "a relief in its own shadow by horizon maps that a moving sun leaves as they are",
-    .source = "Max, Horizon mapping: shadows for bump-mapped surfaces, 1988, doi:10.1007/BF01905562; "
-              "Stewart, Fast horizon computation at all points of a terrain with visibility and "
-              "shading applications, 1998, doi:10.1109/2945.675656",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG |
-              TRAIT_MASK,
+    .source =
+        "Max, Horizon mapping: shadows for bump-mapped surfaces, 1988, doi:10.1007/BF01905562; "
+        "Stewart, Fast horizon computation at all points of a terrain with visibility and "
+        "shading applications, 1998, doi:10.1109/2945.675656",
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG | TRAIT_MASK,
     .options = option_table,
     .options_size = sizeof(struct options),
     .prepare = prepare,
-    .draw = draw,
+    .draw = shadow_passes_draw,
 };

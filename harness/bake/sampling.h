@@ -6,6 +6,17 @@
 
 enum { SAMPLING_PLACES_MAX = 16 };
 
+/* clang-format off */
+/* The row of a method's table for an int `samples`: a word, whose number sampling_count knows. */
+#define SAMPLING_OPTION(type, fallback)                                                            \
+    OPTION_WORD(type, samples, fallback, "1|4|16",                                                 \
+        "samples a pixel: 4 are multisampled, 16 too where the driver has them, else 4 in 2 x 2 texels")
+/* clang-format on */
+static inline int sampling_count(int word)
+{
+    return 1 << 2 * word;
+}
+
 /* Where the samples of a texel lie in it, from its bottom left corner, in [0, 1]. */
 struct sampling_places {
     int count;

@@ -1,7 +1,6 @@
 /* Sky light, volumes, sun light. */
 #include "bake/shadow_passes.h"
 #include "bake/backdrop.h"
-#include "bake/sampling.h"
 #include "bake/shadow_trees.h"
 
 struct shadow_passes {
@@ -40,8 +39,7 @@ static enum status prepare_shadows(struct workspace *workspace, const struct sce
 }
 
 enum status shadow_passes_prepare(struct workspace *workspace, const struct scene *scene,
-                                  const struct shadow_passes_request *request,
-                                  struct shadow_passes **passes)
+                                  const struct shadow_passes_request *request, void **passes)
 {
     struct shadow_passes *made = *passes = ARENA_NEW(workspace->arena, struct shadow_passes);
     enum status status = backdrop_prepare(workspace, scene, &made->backdrop);
@@ -61,9 +59,10 @@ static void draw_surfaces(struct workspace *workspace, struct shadow_passes *pas
     shadow_trees_draw(workspace, passes->trees, view);
 }
 
-enum status shadow_passes_draw(struct workspace *workspace, struct shadow_passes *passes,
-                               const struct view *view, struct target *target)
+enum status shadow_passes_draw(struct workspace *workspace, void *state, const struct view *view,
+                               struct target *target)
 {
+    struct shadow_passes *passes = state;
     struct view lit;
     enum status status = sampling_begin(workspace, passes->sampling, target, view, &lit);
     if (status != STATUS_OK)

@@ -4,6 +4,7 @@
 #ifndef TREELINE_BAKE_SHADOW_PASSES_H
 #define TREELINE_BAKE_SHADOW_PASSES_H
 
+#include "bake/sampling.h"
 #include "bake/shadow_volume.h"
 
 struct shadow_passes_request {
@@ -14,13 +15,18 @@ struct shadow_passes_request {
     bool mixed;   /* of the two nearest azimuths */
 };
 
-struct shadow_passes;
+/* clang-format off */
+/* The row of a method's table for triangles_most. */
+#define SHADOW_PASSES_TRIANGLES(type)                                                              \
+    OPTION(type, triangles, 524288, 10000, 8388608, "",                                            \
+        "that all trees may have together; more are refused: each is drawn twice and casts a volume in every frame")
+/* clang-format on */
 
 enum status shadow_passes_prepare(struct workspace *workspace, const struct scene *scene,
-                                  const struct shadow_passes_request *request,
-                                  struct shadow_passes **passes);
-/* One picture. Without shadows, or without anything that casts volumes, in one pass. */
-enum status shadow_passes_draw(struct workspace *workspace, struct shadow_passes *passes,
-                               const struct view *view, struct target *target);
+                                  const struct shadow_passes_request *request, void **passes);
+/* One picture, a method's `draw`. Without shadows, or without anything that casts volumes, in one
+ * pass. */
+enum status shadow_passes_draw(struct workspace *workspace, void *passes, const struct view *view,
+                               struct target *target);
 
 #endif
