@@ -122,10 +122,20 @@ struct pair {
     struct frame *drawn[2], *traced[2];
 };
 
+/* The effects that the method draws as it comes: an option may have one more. */
+static unsigned effects_claimed(const struct subject *subject)
+{
+    const struct method *method = subject->method;
+    void *options = method->options ? arena_alloc(subject->arena, 1, method->options_size) : NULL;
+    if (options)
+        options_default(method->options, options);
+    return method_effects(method, options, EFFECTS_ALL);
+}
+
 /* From behind, so that leaves are lit from the other side; far, so that fog is thick. */
 static enum status pair_draw(struct subject *subject, unsigned effect, struct pair *pair)
 {
-    unsigned own = subject->method->traits & EFFECTS_ALL;
+    unsigned own = effects_claimed(subject);
     for (int with = 0; with < 2; with++) {
         struct trial_request request = {.world.trees = 1,
                                         .format = TARGET_RGBA32F,
@@ -202,7 +212,7 @@ static enum status check_effects(struct subject *subject)
         enum status status = pair_draw(subject, effects[e].effect, &pair);
         if (!status)
             status = effect_judge(subject, effects[e].word,
-                                  subject->method->traits & effects[e].effect, &pair);
+                                  effects_claimed(subject) & effects[e].effect, &pair);
         if (status)
             return status;
     }
