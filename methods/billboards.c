@@ -8,6 +8,7 @@ struct options {
     int views, layout, pick, resolution, alpha, filter, samples;
     float near;
     bool depth;
+    struct shadow_choice sun;
 };
 
 /* clang-format off */
@@ -29,6 +30,7 @@ static const struct option table[] = {
            "trees closer to the eye than so many of their radii are drawn by their triangles"),
     OPTION(struct options, depth, 0, 0, 1, "",
            "depth from the picture in each fragment, not from a plane"),
+    SHADOW_CHOICE_OPTIONS(struct options, sun),
     OPTION_END,
 };
 /* clang-format on */
@@ -71,6 +73,11 @@ static enum status programs(struct workspace *workspace, const struct options *o
     return status;
 }
 
+static unsigned effects(const void *values)
+{
+    return shadow_choice_effects(&((const struct options *)values)->sun);
+}
+
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
                            const void *values, void **result)
 {
@@ -87,8 +94,11 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .depth = options->depth,
     };
     state->side = (int)atlas.side;
-    struct impostor_request request = {
-        .atlas = atlas, .quads_each = 1, .mixed = mixed_of(options), .near_radii = options->near};
+    struct impostor_request request = {.atlas = atlas,
+                                       .quads_each = 1,
+                                       .mixed = mixed_of(options),
+                                       .near_radii = options->near,
+                                       .sun = options->sun};
     enum status status = impostor_prepare(workspace, scene, &request, &state->impostor);
     return status == STATUS_OK ? programs(workspace, options, state) : status;
 }
@@ -133,10 +143,11 @@ const struct method billboards_method = {
     .source =
         "Rohlf and Helman, IRIS Performer, SIGGRAPH 1994, doi:10.1145/192161.192262; Castano, "
         "Computing Alpha Mipmaps, 2010; Cigolle et al., JCGT 3(2), 2014",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG | TRAIT_MASK,
     .options = table,
     .options_size = sizeof(struct options),
     .supported = method_needs_no_stretch,
+    .effects = effects,
     .prepare = prepare,
     .draw = draw,
 };

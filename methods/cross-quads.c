@@ -9,6 +9,7 @@ struct options {
     int planes, resolution, alpha, filter, samples;
     float near;
     bool depth;
+    struct shadow_choice sun;
 };
 
 /* clang-format off */
@@ -25,6 +26,7 @@ static const struct option table[] = {
            "trees closer to the eye than so many of their radii are drawn by their triangles"),
     OPTION(struct options, depth, 0, 0, 1, "",
            "depth from the picture in each fragment, not from the plane"),
+    SHADOW_CHOICE_OPTIONS(struct options, sun),
     OPTION_END,
 };
 /* clang-format on */
@@ -47,6 +49,11 @@ static int resolution_of(const struct options *options, enum lod lod)
     return options->resolution / divisor < 8 ? 8 : options->resolution / divisor;
 }
 
+static unsigned effects(const void *values)
+{
+    return shadow_choice_effects(&((const struct options *)values)->sun);
+}
+
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
                            const void *values, void **result)
 {
@@ -65,7 +72,8 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     state->planes = (size_t)options->planes;
     struct impostor_request request = {.atlas = atlas,
                                        .quads_each = (halves ? 2 : 1) * state->planes,
-                                       .near_radii = options->near};
+                                       .near_radii = options->near,
+                                       .sun = options->sun};
     enum status status = impostor_prepare(workspace, scene, &request, &state->impostor);
     if (status == STATUS_OK)
         status = impostor_program(workspace, state->impostor, "cross-quads", cross_quads_glsl,
@@ -119,10 +127,11 @@ const struct method cross_quads_method = {
     .source =
         "Meyer, Neyret and Poulin, Interactive Rendering of Trees with Shading and Shadows, 2001, "
         "doi:10.1007/978-3-7091-6242-2_17 (previous work); Castano, Computing Alpha Mipmaps, 2010",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG | TRAIT_MASK,
     .options = table,
     .options_size = sizeof(struct options),
     .supported = method_needs_no_stretch,
+    .effects = effects,
     .prepare = prepare,
     .draw = draw,
 };

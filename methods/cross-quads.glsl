@@ -57,5 +57,5 @@ void main()
 #endif
     vec3 own = st.x * pic.right_s.xyz + st.y * pic.up_t.xyz;
     set_picture(0, t, p, index, st, 1.0, level);
-    set_corner(t, p, own, 0.0, level, uint(number * quads + fan % quads));
+    set_corner(t, p, own, pic.toward_area.xyz, 0.0, level, uint(number * quads + fan % quads));
 }

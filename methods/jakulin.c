@@ -70,14 +70,12 @@ static enum status bark_of(struct workspace *workspace, struct plant *plant, str
 static enum status prepare_trunks(struct workspace *workspace, const struct scene *scene,
                                   const struct options *options, struct state *state)
 {
-    static const float allowances[] = {
-        [LOD_LOW] = 4, [LOD_INTERMEDIATE] = 2, [LOD_HIGH] = 0, [LOD_AUTO] = 1};
-    struct triangles_request request = {.trees_room = scene->instances_count,
-                                        .tolerance_px =
-                                            options->error_px * allowances[workspace->lod],
-                                        .smooth = true,
-                                        .contrast = true,
-                                        .sift = true};
+    struct triangles_request request = {
+        .trees_room = scene->instances_count,
+        .tolerance_px = triangles_tolerance_px(options->error_px, workspace->lod),
+        .smooth = true,
+        .contrast = true,
+        .sift = true};
     struct scene *trunks = ARENA_NEW(workspace->arena, struct scene);
     enum status status = STATUS_OK;
     *trunks = *scene;

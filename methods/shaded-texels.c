@@ -58,6 +58,11 @@ static void add_one(int add, const struct options *options, struct stack_request
     request->criterion_px = add == ADD_CRITERION ? options->criterion : 0;
 }
 
+static unsigned effects(const void *values)
+{
+    return shadow_choice_effects(&((const struct options *)values)->axes.sun);
+}
+
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
                            const void *values, void **state)
 {
@@ -90,9 +95,10 @@ const struct method shaded_texels_method = {
     .summary = "stacks of slices with colours and normals, lit in every fragment",
     .source = "Senegas, Rendu de forets en temps reel, DEA IVR, INPG, 2001; Meyer and Neyret, "
               "Interactive Volumetric Textures, 1998, doi:10.1007/978-3-7091-6453-2_15",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG | TRAIT_MASK,
     .options = table,
     .options_size = sizeof(struct options),
+    .effects = effects,
     .prepare = prepare,
     .draw = draw,
 };

@@ -1,11 +1,10 @@
 /* shadow-map: every triangle, lit by a sun whose shadows come from depth maps (bake/shadow_map.h).
  */
-#include "bake/backdrop.h"
-#include "bake/shadow_map.h"
-#include "bake/triangles.h"
+#include "bake/sampling.h"
+#include "bake/triangles_picture.h"
 
 struct options {
-    int size, cascades, taps, bias, depth, foliage, samples;
+    int size, cascades, taps, bias, depth, foliage, casters, samples;
     float split, bias_scale, layer_m, caster_tx, reach_m, error_px;
     bool stable, perspective, linear;
 };
@@ -29,92 +28,42 @@ static const struct option option_table[] = {
     OPTION_WORD(struct options, foliage, 0, "solid|alpha|deep",
         "what a texel holds: a depth; and how much of it is covered; and how much up to four depths behind the first"),
     OPTION(struct options, layer_m, 1, 0.001, 1000, "m", "foliage=deep: between two of the depths"),
+    OPTION_WORD(struct options, casters, 1, SHADOW_CASTERS_WORDS, SHADOW_CASTERS_DOC),
     OPTION(struct options, caster_tx, 1, 0, 64, "",
-        "how large a pruned leaf of a caster may grow, in texels; 0: every triangle casts"),
+        "casters=low: how large a pruned leaf of a caster may grow, in texels; 0: every triangle casts"),
     OPTION(struct options, reach_m, 0, 0, 1000000, "m", "shadows are seen to this depth; 0: to the end of the view"),
-    OPTION_WORD(struct options, samples, 1, "1|4|16", "samples a pixel"),
+    SAMPLING_OPTION(struct options, 1),
     OPTION(struct options, error_px, 1, 0.1, 64, "px",
         "how large a pruned leaf that is seen may grow at lod=auto; twice as much at intermediate, four times at low"),
     OPTION_END,
 };
 /* clang-format on */
 
-struct state {
-    struct backdrop *backdrop;
-    struct sampling *sampling;
-    struct triangles *triangles;
-    struct cull *cull;
-    struct shadow_map *shadows; /* NULL: not wanted */
-};
-
-static const int samples_of_word[] = {1, 4, 16}, bits_of_word[] = {16, 24, 32};
-
-static enum status prepare_shadows(struct workspace *workspace, const struct scene *scene,
-                                   const struct options *options, struct state *state)
-{
-    struct shadow_options shadows = {.size_px = options->size,
-                                     .cascades = options->cascades,
-                                     .split = options->split,
-                                     .stable = options->stable,
-                                     .perspective = options->perspective,
-                                     .linear = options->linear,
-                                     .radius = options->taps,
-                                     .bias = (enum shadow_bias)options->bias,
-                                     .bias_scale = options->bias_scale,
-                                     .depth_bits = bits_of_word[options->depth],
-                                     .foliage = (enum shadow_foliage)options->foliage,
-                                     .layer_m = options->layer_m,
-                                     .caster_tx = options->caster_tx,
-                                     .reach_m = options->reach_m};
-    enum status status = shadow_map_prepare(workspace, scene, &shadows, &state->shadows);
-    return status ? status : backdrop_receive(workspace, state->backdrop, state->shadows);
-}
-
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
-                           const void *values, void **result)
+                           const void *values, void **state)
 {
-    static const float allowances[] = {
-        [LOD_LOW] = 4, [LOD_INTERMEDIATE] = 2, [LOD_HIGH] = 0, [LOD_AUTO] = 1};
+    static const int bits_of_word[] = {16, 24, 32};
     const struct options *options = values;
-    struct state *state = *result = ARENA_NEW(workspace->arena, struct state);
-    enum status status = backdrop_prepare(workspace, scene, &state->backdrop);
-    if (!status)
-        status = sampling_prepare(workspace, samples_of_word[options->samples], &state->sampling);
-    if (!status && workspace->effects & EFFECT_SUN_SHADOWS)
-        status = prepare_shadows(workspace, scene, options, state);
-    struct triangles_request request = {.trees_room = scene->instances_count,
-                                        .tolerance_px =
-                                            options->error_px * allowances[workspace->lod],
-                                        .shadows = state->shadows};
-    if (!status)
-        status = triangles_prepare(workspace, scene, &request, &state->triangles);
-    if (!status)
-        state->cull = cull_create(workspace->arena, scene, triangles_bounds(state->triangles));
-    return status;
-}
-
-static enum status draw(struct workspace *workspace, void *own, const struct view *view,
-                        struct target *target)
-{
-    struct state *state = own;
-    struct view drawn;
-    enum status status = STATUS_OK;
-    if (state->shadows)
-        status =
-            shadow_map_update(workspace, state->shadows, view, state->triangles, state->backdrop);
-    if (!status)
-        status = sampling_begin(workspace, state->sampling, target, view, &drawn);
-    if (status)
-        return status;
-    backdrop_draw(workspace, state->backdrop, &drawn);
-    struct cull_list list = cull_view(state->cull, view, triangles_order(state->triangles));
-    struct triangles_frame frame = {.view = view,
-                                    .drawn = &drawn,
-                                    .places = sampling_places(state->sampling),
-                                    .cull = state->cull};
-    triangles_draw(workspace, state->triangles, &frame, &list);
-    sampling_end(workspace, state->sampling, target);
-    return gl_check(workspace->gl, "shadow-map", workspace->error);
+    const struct sun_shadows_request shadows = {
+        .map = {.size_px = options->size,
+                .cascades = options->cascades,
+                .split = options->split,
+                .stable = options->stable,
+                .perspective = options->perspective,
+                .linear = options->linear,
+                .radius = options->taps,
+                .bias = (enum shadow_bias)options->bias,
+                .bias_scale = options->bias_scale,
+                .depth_bits = bits_of_word[options->depth],
+                .foliage = (enum shadow_foliage)options->foliage,
+                .layer_m = options->layer_m,
+                .caster_tx = options->caster_tx,
+                .reach_m = options->reach_m},
+        .casters = (enum shadow_casters)options->casters};
+    const struct triangles_picture_request request = {.samples = sampling_count(options->samples),
+                                                      .error_px = options->error_px,
+                                                      .shadows = &shadows};
+    return triangles_picture_prepare(workspace, scene, &request, state);
 }
 
 extern const struct method shadow_map_method;
@@ -135,5 +84,5 @@ const struct method shadow_map_method = {
     .options = option_table,
     .options_size = sizeof(struct options),
     .prepare = prepare,
-    .draw = draw,
+    .draw = triangles_picture_draw,
 };

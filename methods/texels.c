@@ -37,6 +37,11 @@ static const struct option table[] = {
 
 enum { CRITERION_C1, CRITERION_C2, CRITERION_BOTH }; /* as in the table */
 
+static unsigned effects(const void *values)
+{
+    return shadow_choice_effects(&((const struct options *)values)->axes.sun);
+}
+
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
                            const void *values, void **state)
 {
@@ -76,9 +81,10 @@ const struct method texels_method = {
     .summary = "stacks of slices whose colours hold their light",
     .source = "Meyer and Neyret, Interactive Volumetric Textures, EGWR 1998, "
               "doi:10.1007/978-3-7091-6453-2_15",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG | TRAIT_MASK,
     .options = table,
     .options_size = sizeof(struct options),
+    .effects = effects,
     .prepare = prepare,
     .draw = draw,
 };

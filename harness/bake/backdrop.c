@@ -311,8 +311,7 @@ static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
     gl->UseProgram(program);
     gl->BindVertexArray(backdrop->terrain_vertices);
     shade_uniforms(workspace, program, scene, view);
-    if (backdrop->shadows)
-        shadow_map_uniforms(workspace, backdrop->shadows, program);
+    shadow_receiver_uniforms(workspace, backdrop->shadows, program);
     if (program == backdrop->smooth_program)
         smooth_uniforms(workspace, program, scene);
     else

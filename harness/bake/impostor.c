@@ -33,7 +33,7 @@ static float sun_step(float rotation_rad)
     return (float)(lround(share * IMPOSTOR_SUN_STEPS) % IMPOSTOR_SUN_STEPS);
 }
 
-static GLuint upload_trees(struct gl *gl, const struct scene *scene)
+GLuint impostor_trees(struct gl *gl, const struct scene *scene)
 {
     struct arena *scratch = arena_create(0);
     struct tree *trees = ARENA_ARRAY(scratch, struct tree, scene->instances_count + 1);
@@ -96,13 +96,20 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     impostor->scene = scene;
     impostor->alpha = request->atlas.alpha;
     impostor->nearest = request->atlas.nearest;
-    impostor->texels =
-        (uint64_t)(request->mixed ? request->mixed : 1) * (request->atlas.depth ? 3 : 2);
+    impostor->deep = request->atlas.depth;
     enum status status = backdrop_prepare(workspace, scene, &impostor->backdrop);
     if (status == STATUS_OK)
-        status = atlas_build(workspace, scene, &request->atlas, &impostor->atlas);
+        status = shadow_choice_prepare(workspace, scene, &request->sun, true, impostor->backdrop,
+                                       &impostor->shadows);
+    struct atlas_request atlas = request->atlas;
+    atlas.depth |= impostor->shadows != NULL;
+    impostor->texels = (uint64_t)(request->mixed ? request->mixed : 1) * (atlas.depth ? 3 : 2) +
+                       sun_shadows_samples(impostor->shadows);
     if (status == STATUS_OK)
-        status = nearby_prepare(workspace, scene, request->near_radii, &impostor->nearby);
+        status = atlas_build(workspace, scene, &atlas, &impostor->atlas);
+    if (status == STATUS_OK)
+        status = nearby_prepare(workspace, scene, request->near_radii,
+                                sun_shadows_map(impostor->shadows), &impostor->nearby);
     if (status != STATUS_OK)
         return status;
     struct cull_bound *bounds =
@@ -116,7 +123,7 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     impostor->area_m2 = mean_area(scene, impostor->atlas);
     impostor->fans_quad = count * request->quads_each;
     impostor->fans_hull = impostor->fans_quad < HULLS_MOST ? impostor->fans_quad : HULLS_MOST;
-    impostor->instances_buffer = upload_trees(gl, scene);
+    impostor->instances_buffer = impostor_trees(gl, scene);
     impostor->order_buffer =
         gl_buffer(gl, (GLsizeiptr)((count + 1) * sizeof(uint32_t)), NULL, GL_DYNAMIC_STORAGE_BIT);
     size_t lights = (size_t)impostor->atlas->layers * IMPOSTOR_SUN_STEPS;
@@ -144,24 +151,30 @@ static void split_stages(struct arena *arena, const char *source, const char *pa
     parts[2] = fragment < end ? fragment + strlen(marks[1]) : "";
 }
 
+const char *impostor_source(struct arena *arena, const char *source)
+{
+    const char *shared[3], *own[3];
+    split_stages(arena, impostor_glsl, shared);
+    split_stages(arena, source, own);
+    return arena_printf(arena, "%s%s\n#pragma stage vertex\n%s%s\n#pragma stage fragment\n%s%s",
+                        shared[0], own[0], shared[1], own[1], shared[2], own[2]);
+}
+
 enum status impostor_program(struct workspace *workspace, const struct impostor *impostor,
                              const char *name, const char *source, const char *defines,
                              GLuint *program)
 {
     struct arena *scratch = arena_create(0);
-    const char *shared[3], *own[3];
-    split_stages(scratch, impostor_glsl, shared);
-    split_stages(scratch, source, own);
-    const char *text =
-        arena_printf(scratch, "%s%s\n#pragma stage vertex\n%s%s\n#pragma stage fragment\n%s%s",
-                     shared[0], own[0], shared[1], own[1], shared[2], own[2]);
+    const struct shadow_map *shadows = sun_shadows_map(impostor->shadows);
+    const char *text = impostor_source(scratch, source);
     static const char *const modes[] = {"", "STRAIGHT 1\nALPHA_TEST 1\n",
                                         "STRAIGHT 1\nALPHA_COVERAGE 1\n"};
-    const char *all = arena_printf(
-        scratch, "SUN_STEPS %d\nNEAREST %d\n%s%s%s%s", IMPOSTOR_SUN_STEPS, impostor->nearest,
-        defines ? defines : "", modes[impostor->alpha], impostor->atlas->depth ? "DEPTH 1\n" : "",
-        workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
-    enum status status = gl_program(workspace->gl, name, text, all, program, workspace->error);
+    const char *all = arena_printf(scratch, "SUN_STEPS %d\nNEAREST %d\n%s%s%s%s%s",
+                                   IMPOSTOR_SUN_STEPS, impostor->nearest, defines ? defines : "",
+                                   modes[impostor->alpha], impostor->deep ? "DEPTH 1\n" : "",
+                                   impostor->atlas->depth ? "PICTURE_DEPTH 1\n" : "",
+                                   workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
+    enum status status = shadow_receiver_program(workspace, shadows, name, text, all, program);
     arena_destroy(scratch);
     return status;
 }
@@ -236,12 +249,13 @@ enum status impostor_begin(struct workspace *workspace, struct impostor *imposto
 {
     struct gl *gl = workspace->gl;
     GLuint framebuffer = target->framebuffer;
-    if (impostor->alpha == ATLAS_COVERAGE) {
-        enum status status = twin(workspace, impostor, target);
-        if (status != STATUS_OK)
-            return status;
+    enum status status = sun_shadows_update(workspace, impostor->shadows, view, NULL);
+    if (status == STATUS_OK && impostor->alpha == ATLAS_COVERAGE)
+        status = twin(workspace, impostor, target);
+    if (status != STATUS_OK)
+        return status;
+    if (impostor->alpha == ATLAS_COVERAGE)
         framebuffer = impostor->multisampled.framebuffer;
-    }
     gl->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     backdrop_draw(workspace, impostor->backdrop, view);
     gl->Flush(); /* a software GL fills the backdrop while the trees are culled and sorted */
@@ -254,7 +268,7 @@ enum status impostor_begin(struct workspace *workspace, struct impostor *imposto
         gl->NamedBufferSubData(impostor->order_buffer, 0,
                                (GLsizeiptr)(list->count * sizeof *list->instances),
                                list->instances);
-    enum status status = blend ? STATUS_OK : draw_near(workspace, impostor, view);
+    status = blend ? STATUS_OK : draw_near(workspace, impostor, view);
     tally_texels_begin(workspace);
     if (!blend)
         return status;
@@ -280,6 +294,7 @@ void impostor_use(struct workspace *workspace, const struct impostor *impostor, 
     gl->BindTextureUnit(1, atlas->light);
     gl->BindTextureUnit(2, atlas->depth);
     shade_uniforms(workspace, program, impostor->scene, view);
+    shadow_receiver_uniforms(workspace, sun_shadows_map(impostor->shadows), program);
     gl->Uniform1i(gl_uniform(gl, program, "first_tree"), (GLint)first);
     gl->Uniform2f(gl_uniform(gl, program, "layer_px"), (float)atlas->width_px,
                   (float)atlas->height_px);

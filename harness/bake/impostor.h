@@ -18,6 +18,7 @@
 #include "bake/backdrop.h"
 #include "bake/cull.h"
 #include "bake/nearby.h"
+#include "bake/shadow_choice.h"
 
 /* Rotations of a tree that its light is computed for: 1.4 degrees apart. */
 enum { IMPOSTOR_SUN_STEPS = 256 };
@@ -28,8 +29,10 @@ struct impostor {
     struct cull *cull;
     struct backdrop *backdrop;
     struct nearby *nearby;
+    struct sun_shadows *shadows; /* NULL: none */
     enum atlas_alpha alpha;
     bool nearest;    /* texels of minified pictures */
+    bool deep;       /* depth from the picture in each fragment */
     uint64_t texels; /* that a fragment takes */
     GLuint vertices; /* no attributes; the index buffer of fans */
     GLuint instances_buffer, order_buffer;
@@ -46,14 +49,20 @@ struct impostor_request {
     size_t quads_each; /* a tree */
     int mixed;         /* pictures in a fragment; 0: 1 */
     float near_radii;  /* nearby.h */
+    struct shadow_choice sun;
 };
 
 /* The scene's part: backdrop, atlas, trees, index buffer. */
 enum status impostor_prepare(struct workspace *workspace, const struct scene *scene,
                              const struct impostor_request *request, struct impostor **impostor);
 
+/* impostor.glsl and a source of the same stages, as one. */
+const char *impostor_source(struct arena *arena, const char *source);
+/* The scene's trees as impostor.glsl reads them: a buffer. */
+GLuint impostor_trees(struct gl *gl, const struct scene *scene);
+
 /* Links impostor.glsl and a method's own source; defines may be NULL. Adds ALPHA_TEST,
- * ALPHA_COVERAGE, DEPTH, FOG. */
+ * ALPHA_COVERAGE, DEPTH, PICTURE_DEPTH, FOG and what receives shadows. */
 enum status impostor_program(struct workspace *workspace, const struct impostor *impostor,
                              const char *name, const char *source, const char *defines,
                              GLuint *program);

@@ -12,6 +12,7 @@ struct nearby {
     struct cull_cylinder *cylinders; /* of each species: an eye within is near */
     float reach_m;                   /* no near tree's middle is farther from the eye */
     struct triangles *triangles;     /* NULL: not needed yet */
+    const struct shadow_map *shadows;
     size_t count;
     uint32_t instances[NEARBY_MOST];
     float depths_m[NEARBY_MOST];
@@ -25,7 +26,8 @@ static bool is_near(const struct nearby *nearby, uint32_t instance, const float 
 
 static enum status upload(struct workspace *workspace, struct nearby *nearby)
 {
-    const struct triangles_request request = {.trees_room = NEARBY_MOST, .sift = true};
+    const struct triangles_request request = {
+        .trees_room = NEARBY_MOST, .sift = true, .shadows = nearby->shadows};
     return triangles_prepare(workspace, nearby->scene, &request, &nearby->triangles);
 }
 
@@ -45,10 +47,11 @@ static bool path_comes_near(const struct nearby *nearby)
 }
 
 enum status nearby_prepare(struct workspace *workspace, const struct scene *scene, float radii,
-                           struct nearby **result)
+                           const struct shadow_map *shadows, struct nearby **result)
 {
     struct nearby *nearby = *result = ARENA_NEW(workspace->arena, struct nearby);
     nearby->scene = scene;
+    nearby->shadows = shadows;
     nearby->reach_m = -INFINITY;
     nearby->cylinders = ARENA_ARRAY(workspace->arena, struct cull_cylinder, scene->species_count);
     if (!(radii > 0))

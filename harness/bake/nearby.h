@@ -16,12 +16,14 @@
 enum { NEARBY_MOST = 64 };
 
 struct nearby;
+struct shadow_map;
 
 /* radii: a tree is near when the eye is closer to its axis than so many of its radii, and no
  * farther above or below it than what that is more than one; 0: none ever is. The triangles are
- * uploaded here when the camera's path comes so near, else by the first picture that needs them. */
+ * uploaded here when the camera's path comes so near, else by the first picture that needs them.
+ * shadows: received; NULL: none. */
 enum status nearby_prepare(struct workspace *workspace, const struct scene *scene, float radii,
-                           struct nearby **nearby);
+                           const struct shadow_map *shadows, struct nearby **nearby);
 
 /* Takes the near trees out of a list that is sorted by depth. */
 void nearby_take(struct nearby *nearby, const struct view *view, enum cull_order order,

@@ -2,6 +2,7 @@
 #include "bake/shadow_map.h"
 
 #include "bake/backdrop.h"
+#include "bake/shadow_billboards.h"
 #include "bake/triangles.h"
 #include "base/clock.h"
 
@@ -52,7 +53,7 @@ static void prepare_maps(struct gl *gl, struct shadow_map *map)
     gl->NamedFramebufferDrawBuffer(map->framebuffer, GL_NONE);
 }
 
-static int layers_of(const struct shadow_options *options)
+int shadow_layers(const struct shadow_options *options)
 {
     return options->foliage == SHADOW_SOLID ? 0 : options->foliage == SHADOW_ALPHA ? 1 : 4;
 }
@@ -64,7 +65,7 @@ static enum status prepare_programs(struct workspace *workspace, struct shadow_m
     for (int covers = 0; covers < (map->layers ? 2 : 1); covers++)
         for (int v = 0; v < SHADOW_CASTS; v++) {
             const char *layers =
-                covers ? arena_printf(workspace->arena, "LAYERS %d\n", layers_of(&map->options))
+                covers ? arena_printf(workspace->arena, "LAYERS %d\n", shadow_layers(&map->options))
                        : "";
             const char *defines = arena_printf(workspace->arena, "%s%s", variants[v], layers);
             enum status status = gl_program(workspace->gl, "shadow caster", shadow_cast_glsl,
@@ -110,7 +111,7 @@ enum status shadow_map_program(struct workspace *workspace, const struct shadow_
     const char *all =
         arena_printf(workspace->arena, "SHADOWED 1\nBIAS %d\nRADIUS %d\nLINEAR %d\nLAYERS %d\n%s",
                      (int)options->bias, options->radius, options->linear && !map->layers,
-                     layers_of(options), defines ? defines : "");
+                     shadow_layers(options), defines ? defines : "");
     const char *text = arena_printf(workspace->arena, "%s\n%s", shadow_map_glsl, source);
     return gl_program(workspace->gl, name, text, all, program, workspace->error);
 }
@@ -154,25 +155,30 @@ void shadow_pass_use(struct workspace *workspace, const struct shadow_pass *pass
 }
 
 static void pass_draw(struct workspace *workspace, const struct shadow_map *map, int cascade,
-                      bool covers, struct triangles *trees, const struct backdrop *backdrop)
+                      bool covers, const struct shadow_cast_by *trees,
+                      const struct backdrop *backdrop)
 {
     const struct shadow_fit *fit = &map->fits[cascade];
     struct shadow_pass pass = {.fit = fit,
                                .programs = map->programs[covers],
+                               .covers = covers,
                                .cascade = cascade,
                                .layer_depth = map->options.layer_m / (float)fit->range_m};
     for (int i = 0; i < 16; i++)
         pass.light[i] = (float)fit->matrix[i / 4][i % 4];
     if (map->options.caster_tx > 0)
         pass.per_m = 1 / (map->options.caster_tx * (float)fmax(fit->texel_m[0], fit->texel_m[1]));
+    memcpy(pass.sun, map->sun, sizeof pass.sun);
     backdrop_cast(workspace, backdrop, &pass);
-    if (trees)
-        triangles_cast(workspace, trees, &pass);
+    if (trees->billboards)
+        shadow_billboards_cast(workspace, trees->billboards, &pass);
+    else if (trees->triangles)
+        triangles_cast(workspace, trees->triangles, &pass);
 }
 
 /* Which of a texel's samples are covered, to each depth; then their mean. */
 static void cascade_cover(struct workspace *workspace, const struct shadow_map *map, int cascade,
-                          struct triangles *trees, const struct backdrop *backdrop)
+                          const struct shadow_cast_by *trees, const struct backdrop *backdrop)
 {
     struct gl *gl = workspace->gl;
     static const float nothing[4] = {0, 0, 0, 0};
@@ -193,8 +199,8 @@ static void cascade_cover(struct workspace *workspace, const struct shadow_map *
                              size, size, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-static void maps_make(struct workspace *workspace, struct shadow_map *map, struct triangles *trees,
-                      const struct backdrop *backdrop)
+static void maps_make(struct workspace *workspace, struct shadow_map *map,
+                      const struct shadow_cast_by *trees, const struct backdrop *backdrop)
 {
     struct gl *gl = workspace->gl;
     static const float far_end = 1;
@@ -229,7 +235,7 @@ static uint64_t bytes_of(const struct shadow_options *options)
 }
 
 enum status shadow_map_update(struct workspace *workspace, struct shadow_map *map,
-                              const struct view *view, struct triangles *trees,
+                              const struct view *view, const struct shadow_cast_by *trees,
                               const struct backdrop *backdrop)
 {
     struct gl *gl = workspace->gl;
@@ -250,8 +256,11 @@ enum status shadow_map_update(struct workspace *workspace, struct shadow_map *ma
     return gl_check(gl, "shadow map", workspace->error);
 }
 
-void shadow_map_uniforms(struct workspace *workspace, const struct shadow_map *map, GLuint program)
+void shadow_receiver_uniforms(struct workspace *workspace, const struct shadow_map *map,
+                              GLuint program)
 {
+    if (!map)
+        return;
     struct gl *gl = workspace->gl;
     float matrices[SHADOW_CASCADES_MAX][16] = {{0}}, texels[SHADOW_CASCADES_MAX][3] = {{0}};
     float ends[4] = {0};
@@ -282,4 +291,12 @@ void shadow_map_uniforms(struct workspace *workspace, const struct shadow_map *m
         gl->BindTextureUnit(UNIT_FIRST, map->maps);
         gl->BindTextureUnit(UNIT_LAYERS, map->layers);
     }
+}
+
+enum status shadow_receiver_program(struct workspace *workspace, const struct shadow_map *map,
+                                    const char *name, const char *source, const char *defines,
+                                    GLuint *program)
+{
+    return map ? shadow_map_program(workspace, map, name, source, defines, program)
+               : gl_program(workspace->gl, name, source, defines, program, workspace->error);
 }

@@ -45,13 +45,44 @@ float shadow_tap(int cascade, vec2 uv, float depth, float range_m)
 }
 #endif
 
-// normal need not be unit
-float shadow_visibility(vec3 position_m, vec3 normal)
+int shadow_cascade(vec3 position_m)
 {
     float depth_m = dot(position_m - eye_m, shadow_forward);
     int cascade = 0;
     while (cascade < shadow_cascades - 1 && depth_m > shadow_ends[cascade])
         cascade++;
+    return cascade;
+}
+
+bool shadow_is_outside(vec3 at)
+{
+    return any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)));
+}
+
+// The filter about a place in the map; slope: depth a texel, of the receiver's plane.
+float shadow_filter(int cascade, vec3 at, vec2 slope)
+{
+    float sum = 0.0;
+    for (int y = -RADIUS; y <= RADIUS; y++)
+        for (int x = -RADIUS; x <= RADIUS; x++) {
+            float depth = at.z + slope.x * float(x) + slope.y * float(y);
+            sum += shadow_tap(cascade, at.xy + vec2(x, y) / shadow_size, clamp(depth, 0.0, 1.0), shadow_texel[cascade].z);
+        }
+    return sum / float((2 * RADIUS + 1) * (2 * RADIUS + 1));
+}
+
+// Of a place that is known to within_m, among matter without a surface of its own: a slice's, a picture's.
+float shadow_visibility_within(vec3 position_m, float within_m)
+{
+    int cascade = shadow_cascade(position_m);
+    vec3 at = shadow_place(cascade, position_m + within_m * sun_direction);
+    return shadow_is_outside(at) ? 1.0 : shadow_filter(cascade, at - vec3(0.0, 0.0, shadow_step), vec2(0.0));
+}
+
+// normal need not be unit
+float shadow_visibility(vec3 position_m, vec3 normal)
+{
+    int cascade = shadow_cascade(position_m);
     const float reach = float(RADIUS) + (LINEAR == 1 ? 1.0 : 0.5);
     vec3 texel = shadow_texel[cascade];
     vec3 n = normalize(normal);
@@ -62,7 +93,7 @@ float shadow_visibility(vec3 position_m, vec3 normal)
     position_m += side * n * (shadow_bias * reach * 1.4142136 * max(texel.x, texel.y) * sine);
 #endif
     vec3 at = shadow_place(cascade, position_m);
-    if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0))))
+    if (shadow_is_outside(at))
         return 1.0;
     float bias = BIAS == 0 ? 0.0 : shadow_step;
     vec2 slope = vec2(0.0);  // depth a texel, of the receiver's plane
@@ -80,14 +111,6 @@ float shadow_visibility(vec3 position_m, vec3 normal)
     float within = BIAS == 3 ? reach - float(RADIUS) : reach;
     bias += shadow_bias * within * (abs(slope.x) + abs(slope.y));
 #endif
-    float sum = 0.0;
-    for (int y = -RADIUS; y <= RADIUS; y++)
-        for (int x = -RADIUS; x <= RADIUS; x++) {
-            float depth = at.z - bias;
-#if BIAS == 3
-            depth += shadow_bias * (slope.x * float(x) + slope.y * float(y));
-#endif
-            sum += shadow_tap(cascade, at.xy + vec2(x, y) / shadow_size, clamp(depth, 0.0, 1.0), texel.z);
-        }
-    return sum / float((2 * RADIUS + 1) * (2 * RADIUS + 1));
+    at.z -= bias;
+    return shadow_filter(cascade, at, BIAS == 3 ? shadow_bias * slope : vec2(0.0));
 }

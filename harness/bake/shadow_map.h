@@ -36,34 +36,52 @@ struct shadow_options {
 
 struct shadow_map;
 struct triangles;
+struct shadow_billboards;
 struct backdrop;
+
+/* The trees that cast: as pictures where there are any, else as triangles; NULL both: none do. */
+struct shadow_cast_by {
+    struct triangles *triangles;
+    const struct shadow_billboards *billboards;
+};
+
+/* Depths behind the first that a texel's coverage is kept for: 0, 1 or 4; shadow_map.glsl's LAYERS.
+ */
+int shadow_layers(const struct shadow_options *options);
 
 enum status shadow_map_prepare(struct workspace *workspace, const struct scene *scene,
                                const struct shadow_options *options, struct shadow_map **map);
 
-/* gl_program() with shadow_visibility() in front of the source and SHADOWED defined. */
+/* gl_program() with shadow_map.glsl in front of the source and SHADOWED defined. */
 enum status shadow_map_program(struct workspace *workspace, const struct shadow_map *map,
                                const char *name, const char *source, const char *defines,
                                GLuint *program);
 
 /* Makes what the view needs anew: all maps where their fits have changed since the last call, else
  * nothing; always in a counted draw, whose tally it fills in. Changes the framebuffer that is
- * bound. trees: NULL for none. */
+ * bound. */
 enum status shadow_map_update(struct workspace *workspace, struct shadow_map *map,
-                              const struct view *view, struct triangles *trees,
+                              const struct view *view, const struct shadow_cast_by *trees,
                               const struct backdrop *backdrop);
 
-/* Uniforms and textures of a receiver's program that is in use. */
-void shadow_map_uniforms(struct workspace *workspace, const struct shadow_map *map, GLuint program);
+/* For what receives if there is a map: gl_program() where map is NULL, else shadow_map_program();
+ * and, of the program in use, uniforms and textures, none where map is NULL. */
+enum status shadow_receiver_program(struct workspace *workspace, const struct shadow_map *map,
+                                    const char *name, const char *source, const char *defines,
+                                    GLuint *program);
+void shadow_receiver_uniforms(struct workspace *workspace, const struct shadow_map *map,
+                              GLuint program);
 
 /* For those who draw casters: the pass that is under way. */
 struct shadow_pass {
     const struct shadow_fit *fit;
     float light[16];
     const GLuint *programs; /* SHADOW_CASTS */
+    bool covers;            /* coverage behind the first depths is drawn, else the depths */
     int cascade;
     float layer_depth;
-    float per_m; /* tolerances a metre of a caster; 0: every triangle */
+    float sun[3]; /* unit, toward it */
+    float per_m;  /* tolerances a metre of a caster; 0: every triangle */
 };
 enum {
     SHADOW_CAST_TERRAIN,

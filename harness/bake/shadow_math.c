@@ -268,3 +268,17 @@ void shadow_fit(const struct shadow_request *request, const double axes[3][3],
     depth_range(request, &low[2], &high[2]);
     fit_ortho(axes, low, high, request->size_px, fit);
 }
+
+bool shadow_fit_meets(const struct shadow_fit *fit, const double center_m[3], double radius_m)
+{
+    for (int row = 0; row < 2 && !fit->perspective; row++) {
+        double at = fit->matrix[3][row], square = 0;
+        for (int i = 0; i < 3; i++) {
+            at += fit->matrix[i][row] * center_m[i];
+            square += fit->matrix[i][row] * fit->matrix[i][row];
+        }
+        if (fabs(at) > 1 + radius_m * sqrt(square))
+            return false;
+    }
+    return true;
+}

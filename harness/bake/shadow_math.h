@@ -51,6 +51,10 @@ struct shadow_fit {
 void shadow_fit(const struct shadow_request *request, const double axes[3][3],
                 struct shadow_fit *fit);
 
+/* Whether a sphere reaches into the map across the light, m; true of any where the map has
+ * perspective, which would need more than this. */
+bool shadow_fit_meets(const struct shadow_fit *fit, const double center_m[3], double radius_m);
+
 /* The depth in metres that a plane of slope (gradient_x, gradient_y), metres a metre in light
  * space, needs as bias under a filter that reaches reach texels from the point: (k + 1/2) for (2k +
  * 1)^2 nearest taps, k + 1 for bilinear ones; at most sqrt(2) reach w tan(b), b the angle of normal

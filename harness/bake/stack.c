@@ -39,8 +39,8 @@ static enum status stack_program(struct workspace *workspace, struct stack *stac
         scene_is_stretched(stack->scene) ? "STRETCHED 1\n" : "",
         request->turns > 0 ? "LIT 1\n" : "", request->ground != GROUND_UPRIGHT ? "BENT 1\n" : "",
         workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
-    enum status status =
-        gl_program(workspace->gl, "stack", stack_glsl, defines, &stack->program, workspace->error);
+    enum status status = shadow_receiver_program(workspace, sun_shadows_map(stack->shadows),
+                                                 "stack", stack_glsl, defines, &stack->program);
     arena_destroy(scratch);
     return status;
 }
@@ -55,13 +55,18 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
     stack->request = *request;
     enum status status = backdrop_prepare(workspace, scene, &stack->backdrop);
     if (status == STATUS_OK)
+        status = shadow_choice_prepare(workspace, scene, &request->sun, true, stack->backdrop,
+                                       &stack->shadows);
+    if (status == STATUS_OK)
         status = stack_bake(workspace, stack);
     if (status == STATUS_OK)
         status = stack_program(workspace, stack);
     if (status == STATUS_OK)
-        status = nearby_prepare(workspace, scene, request->near_radii, &stack->nearby);
-    if (status == STATUS_OK && request->distant_px > 0 && workspace->lod == LOD_AUTO &&
-        request->ground == GROUND_UPRIGHT && !scene_is_stretched(scene))
+        status = nearby_prepare(workspace, scene, request->near_radii,
+                                sun_shadows_map(stack->shadows), &stack->nearby);
+    if (status == STATUS_OK && request->distant_px > 0 && !stack->shadows &&
+        workspace->lod == LOD_AUTO && request->ground == GROUND_UPRIGHT &&
+        !scene_is_stretched(scene))
         status = distant_prepare(workspace, scene, request->distant_px,
                                  request->smooth ? 1.0f / STACK_BAND : 0, &stack->distant);
     if (status == STATUS_OK && request->groups > 0)
@@ -98,6 +103,7 @@ static void use_program(struct workspace *workspace, const struct stack *stack,
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, stack->quads_buffer);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, stack->bends_buffer);
     shade_uniforms(workspace, stack->program, stack->scene, view);
+    shadow_receiver_uniforms(workspace, sun_shadows_map(stack->shadows), stack->program);
     if (stack->front) {
         stack_front_under(workspace);
         return;
@@ -225,8 +231,10 @@ static void draw_stacks(struct workspace *workspace, const struct stack *stack,
                          fill);
     }
     draw_batch(workspace, stack, fill);
+    uint64_t textures = stack->request.turns > 0 && !stack->shadows ? 1 : 2;
     tally_texels_end(workspace,
-                     (stack->request.turns > 0 ? 1 : 2) * (stack->request.interpolate ? 2 : 1),
+                     textures * (stack->request.interpolate ? 2 : 1) +
+                         sun_shadows_samples(stack->shadows),
                      false);
     workspace->gl->Disable(GL_BLEND);
     workspace->gl->DepthMask(GL_TRUE);
@@ -285,6 +293,8 @@ enum status stack_draw(struct workspace *workspace, struct stack *stack, const s
                        struct target *target)
 {
     enum status status = stack_relight(workspace, stack, view->sun_direction);
+    if (status == STATUS_OK)
+        status = sun_shadows_update(workspace, stack->shadows, view, NULL);
     if (status != STATUS_OK)
         return status;
     stack_backdrop(workspace, stack, view, target);

@@ -1,5 +1,5 @@
 // Slices of trees as quads (harness/bake/stack.h). TRILINEAR, STRAIGHT, ROUGH, INTERPOLATE, OBLIQUE, POWER, FOG: as
-// stack_request and the scene have them.
+// stack_request and the scene have them. SHADOWED: behind shadow_map.glsl.
 
 #pragma stage vertex
 struct tree {
@@ -25,6 +25,10 @@ flat out float oblique;
 #endif
 #ifdef FOG
 out vec3 away_m;
+#endif
+#ifdef SHADOWED
+out vec3 world_m;
+flat out float within_m;
 #endif
 
 struct quad {
@@ -63,6 +67,10 @@ void main()
 #ifdef FOG
     away_m = world - eye_m;
 #endif
+#ifdef SHADOWED
+    world_m = world;
+    within_m = 0.5 * abs(dot(t.w_level.xyz, sun_direction)) + length(t.u_step.xyz) / layer_px.x;
+#endif
     gl_Position = view_projection * vec4(world, 1.0);
     level = t.w_level.w;
     leaf_light = t.leaf_power.xyz;
@@ -83,7 +91,7 @@ void main()
 
 #pragma stage fragment
 layout(binding = 0) uniform sampler2DArray color_map;   // albedo x coverage (STRAIGHT: albedo), coverage
-layout(binding = 1) uniform sampler2DArray normal_map;  // 128 is 0; share of leaf
+layout(binding = 1) uniform sampler2DArray normal_map;  // 128 is 0; share of leaf; LIT, SHADOWED: colours in the shade
 flat in float level;
 flat in vec3 leaf_light, bark_light;
 flat in vec2 power_albedo;
@@ -100,6 +108,10 @@ flat in float oblique;  // 1 / cosine - 1
 #ifdef FOG
 in vec3 away_m;
 #endif
+#ifdef SHADOWED
+in vec3 world_m;
+flat in float within_m;  // that a place in a slice is known to
+#endif
 in vec3 place;
 layout(location = 0) out vec4 color;
 
@@ -110,14 +122,19 @@ layout(location = 0) out vec4 color;
 #endif
 
 // Of a texel at a slice between two: INTERPOLATE mixes them (Rezk-Salama et al. 2000).
-vec4 fetch_color(vec3 at)
+vec4 fetch_from(sampler2DArray map, vec3 at)
 {
 #ifdef INTERPOLATE
     vec3 below = vec3(at.xy, floor(at.z));
-    vec4 texel = mix(FETCH(color_map, below), FETCH(color_map, below + vec3(0.0, 0.0, 1.0)), at.z - below.z);
+    return mix(FETCH(map, below), FETCH(map, below + vec3(0.0, 0.0, 1.0)), at.z - below.z);
 #else
-    vec4 texel = FETCH(color_map, at);
+    return FETCH(map, at);
 #endif
+}
+
+vec4 fetch_color(vec3 at)
+{
+    vec4 texel = fetch_from(color_map, at);
 #ifdef STRAIGHT
     texel.rgb *= texel.a;
 #endif
@@ -126,12 +143,7 @@ vec4 fetch_color(vec3 at)
 
 vec4 fetch_normal(vec3 at)
 {
-#ifdef INTERPOLATE
-    vec3 below = vec3(at.xy, floor(at.z));
-    vec4 texel = mix(FETCH(normal_map, below), FETCH(normal_map, below + vec3(0.0, 0.0, 1.0)), at.z - below.z);
-#else
-    vec4 texel = FETCH(normal_map, at);
-#endif
+    vec4 texel = fetch_from(normal_map, at);
     return vec4(texel.xyz * (255.0 / 127.0) - 128.0 / 127.0, texel.w);
 }
 
@@ -187,6 +199,16 @@ float facing_of(vec4 n)
 void main()
 {
     vec4 texel = fetch_color(place);
+#ifdef SHADOWED
+    sun_visibility = shadow_visibility_within(world_m, within_m);
+#ifdef LIT
+    vec3 shaded = fetch_from(normal_map, place).rgb;
+#ifdef STRAIGHT
+    shaded *= texel.a;
+#endif
+    texel.rgb = mix(shaded, texel.rgb, sun_visibility);
+#endif
+#endif
 #ifndef LIT
     vec4 normal = fetch_normal(place);
 #endif
@@ -206,7 +228,16 @@ void main()
 #ifdef LIT
     color = vec4(texel.rgb * power_albedo.y, texel.a);
 #else
-    color = vec4(texel.rgb * (light_of(normal) * sun_radiance + ambient) * power_albedo.y, texel.a);
+    float lit = light_of(normal);
+    color = vec4(texel.rgb * (lit * sun_visibility * sun_radiance + ambient) * power_albedo.y, texel.a);
+#endif
+#ifdef SHADOWED
+    if (masked)
+#ifdef LIT
+        color.rgb = vec3(sun_visibility, 1.0, 0.0) * texel.a;
+#else
+        color.rgb = vec3(lit > 0.0 ? sun_visibility : 0.0, 1.0, 0.0) * texel.a;
+#endif
 #endif
 #ifdef FOG
     color.rgb = mix(fog_color * color.a, color.rgb, exp(-fog_density * length(away_m)));

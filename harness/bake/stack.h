@@ -12,6 +12,7 @@
 #include "bake/cull.h"
 #include "bake/distant.h"
 #include "bake/nearby.h"
+#include "bake/shadow_choice.h"
 #include "bake/slices.h"
 #include "bake/stack_front.h"
 
@@ -51,7 +52,9 @@ struct stack_request {
     float criterion_texels; /* C1: gap between two slices along them, texels; 0: without it */
     float texel_px;         /* mip level: texels are about this large on the picture */
     float distant_px;       /* at lod=auto, where the largest tree is smaller, trees are pictures
-                               drawn by the CPU; 0: none is. Not on GROUND_BASE and GROUND_PATCH */
+                               drawn by the CPU; 0: none is. Not on GROUND_BASE and GROUND_PATCH,
+                               and not in shadows */
+    struct shadow_choice sun;
     enum stack_mix mix;
     bool above; /* mixed, crossed: the last direction is +y, its stack's share of a tree grows from
                    an elevation of the eye of 30 degrees to 1 at 90 */
@@ -86,7 +89,7 @@ struct stack_plant {
 };
 
 struct stack_array {
-    GLuint color, normal;
+    GLuint color, normal; /* normal: of light that is baked in, colours in the shade or 0 */
     int width_px, height_px, layers, levels;
 };
 
@@ -101,8 +104,9 @@ struct stack {
     struct backdrop *backdrop;
     struct cull *cull;
     struct nearby *nearby;
-    struct distant *distant;   /* NULL: no tree is */
-    struct stack_front *front; /* NULL: back to front */
+    struct sun_shadows *shadows; /* NULL: none */
+    struct distant *distant;     /* NULL: no tree is */
+    struct stack_front *front;   /* NULL: back to front */
     GLuint program, vertices, trees_buffer, quads_buffer;
     GLuint bends_buffer;      /* 0: upright */
     struct stack_bend *bends; /* of stack_bake.h, as trees */

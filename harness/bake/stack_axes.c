@@ -22,5 +22,6 @@ struct stack_request stack_axes_request(const struct stack_axes *axes)
         .smooth = axes->smooth,
         .texel_px = axes->texel,
         .distant_px = fast ? axes->distant : 0,
+        .sun = axes->sun,
     };
 }

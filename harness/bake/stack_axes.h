@@ -10,6 +10,7 @@ struct stack_axes {
     int slices, resolution, cut, samples, filter;
     float texel, near, distant;
     bool oblique, interpolate, smooth;
+    struct shadow_choice sun;
 };
 
 enum stack_path { STACK_NAIVE, STACK_FAST };
@@ -38,7 +39,8 @@ enum stack_path { STACK_NAIVE, STACK_FAST };
     OPTION_IN(type, axes, interpolate, 0, 0, 1, "",                                                \
         "up to four times the slices, by interpolation, where the criterion asks for more"),       \
     OPTION_IN(type, axes, smooth, 0, 0, 1, "",                                                     \
-        "numbers of slices and directions change gradually, and trees become distant so")
+        "numbers of slices and directions change gradually, and trees become distant so"),         \
+    SHADOW_CHOICE_OPTIONS(type, axes.sun)
 /* clang-format on */
 
 /* What these options ask for; a method adds its own. */

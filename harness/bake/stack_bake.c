@@ -6,10 +6,11 @@
 /* Layers of one texture array, as OpenGL 4.5 promises them. */
 enum { LAYERS_MOST = 2048 };
 
-/* The slices of one stack: [0] as seen from the front, [1] from behind, level by level. */
+/* The slices of one stack: [0] as seen from the front, [1] from behind, level by level; [2] and [3]
+ * the same in the shade, where light is baked in and shadows are received. */
 struct pyramid {
-    int levels;
-    const struct slices *slices[STACK_LEVELS][2];
+    int levels, kinds;
+    const struct slices *slices[STACK_LEVELS][STACK_LIGHTS];
 };
 
 static int texels_of(float extent_m, float texel_m)
@@ -56,8 +57,7 @@ static const struct slices *lit_slices(struct arena *scratch, const struct slice
     return lit;
 }
 
-/* All numbers of slices of one direction. With two lights, of the front and from behind, they are
- * baked in. */
+/* All numbers of slices of one direction. Lights, of the front and from behind, are baked in. */
 static enum status pyramid_create(struct workspace *workspace, struct arena *scratch,
                                   struct plant *plant, const struct slices_request *bake,
                                   struct pyramid *pyramid)
@@ -67,14 +67,15 @@ static enum status pyramid_create(struct workspace *workspace, struct arena *scr
         slices_create(scratch, plant, bake, workspace->threads, &slices, workspace->error);
     if (status != STATUS_OK)
         return status;
-    for (size_t behind = 0; behind < 2; behind++)
-        pyramid->slices[0][behind] =
-            bake->lights_count > 0 ? lit_slices(scratch, slices, behind) : slices;
+    pyramid->kinds = bake->lights_count > 0 ? (int)bake->lights_count : 2;
+    for (int kind = 0; kind < pyramid->kinds; kind++)
+        pyramid->slices[0][kind] =
+            bake->lights_count > 0 ? lit_slices(scratch, slices, (size_t)kind) : slices;
     pyramid->levels = 1;
     while (pyramid->levels < STACK_LEVELS && pyramid->slices[pyramid->levels - 1][0]->count > 1) {
-        for (int behind = 0; behind < 2; behind++)
-            pyramid->slices[pyramid->levels][behind] =
-                slices_fused(scratch, pyramid->slices[pyramid->levels - 1][behind], behind);
+        for (int kind = 0; kind < pyramid->kinds; kind++)
+            pyramid->slices[pyramid->levels][kind] =
+                slices_fused(scratch, pyramid->slices[pyramid->levels - 1][kind], kind % 2);
         pyramid->levels++;
     }
     return STATUS_OK;
@@ -127,7 +128,7 @@ static void side_plan(struct arena *arena, struct stack *stack, const struct pyr
 }
 
 /* Room for one slice: values of this mip level and the next; bytes of all levels, one behind the
- * other. normal: NULL where light is baked in. */
+ * other. normal: NULL where none is drawn. */
 struct page {
     float *texels, *half;
     uint8_t (*color)[4], (*normal)[4], (*spare)[4];
@@ -142,6 +143,16 @@ static size_t mip_texels(const struct stack_array *array)
         count += (size_t)(array->width_px >> level ? array->width_px >> level : 1) *
                  (size_t)(array->height_px >> level ? array->height_px >> level : 1);
     return count;
+}
+
+/* The textures that slices go to: an array's, or its colours in the shade. */
+static struct stack_array textures_of(const struct stack *stack, const struct stack_array *array,
+                                      bool shaded)
+{
+    struct stack_array textures = *array;
+    textures.color = shaded ? array->normal : array->color;
+    textures.normal = stack->request.turns > 0 ? 0 : array->normal;
+    return textures;
 }
 
 static void pages_open(struct arena *arena, const struct stack_array *array,
@@ -224,21 +235,23 @@ static void side_upload(struct workspace *workspace, const struct stack *stack,
                         const struct pyramid *pyramid, const struct stack_side *side)
 {
     struct arena *scratch = arena_create(0);
-    const struct stack_array *array = &stack->arrays[side->array];
+    struct stack_array textures = textures_of(stack, &stack->arrays[side->array], false);
     struct page pages[PAGES];
-    pages_open(scratch, array, pages);
-    for (int l = 0; l < pyramid->levels; l++)
-        for (int behind = 0; behind < (l || stack->request.turns > 0 ? 2 : 1); behind++)
-            level_upload(workspace, stack, array, pyramid->slices[l][behind],
-                         side->levels[l].layer[behind], pages);
+    pages_open(scratch, &textures, pages);
+    for (int kind = 0; kind < pyramid->kinds; kind++) {
+        textures = textures_of(stack, &stack->arrays[side->array], kind / 2);
+        for (int l = stack->request.turns > 0 || kind == 0 ? 0 : 1; l < pyramid->levels; l++)
+            level_upload(workspace, stack, &textures, pyramid->slices[l][kind],
+                         side->levels[l].layer[kind % 2], pages);
+    }
     arena_destroy(scratch);
 }
 
-static void array_create(struct gl *gl, const struct stack_request *request,
-                         struct stack_array *array)
+static void array_create(struct gl *gl, const struct stack *stack, struct stack_array *array)
 {
+    const struct stack_request *request = &stack->request;
     GLuint *textures[2] = {&array->color, &array->normal};
-    for (int i = 0; i < (request->turns > 0 ? 1 : 2); i++) {
+    for (int i = 0; i < (request->turns > 0 && !stack->shadows ? 1 : 2); i++) {
         *textures[i] = gl_texture(gl, GL_TEXTURE_2D_ARRAY, array->levels, GL_RGBA8, array->width_px,
                                   array->height_px, array->layers);
         gl->TextureParameteri(*textures[i], GL_TEXTURE_MIN_FILTER,
@@ -276,7 +289,7 @@ static enum status plant_slices(struct workspace *workspace, struct arena *scrat
 {
     const struct slices_request *all = &stack->request.bake;
     struct plant *plant = stack->scene->species[index / stack->steps_count].plant;
-    struct slices_light lights[2];
+    struct slices_light lights[STACK_LIGHTS];
     struct slices_request whole = *all;
     float longest_m = 0;
     bool lit = stack->request.turns > 0;
@@ -287,7 +300,7 @@ static enum status plant_slices(struct workspace *workspace, struct arena *scrat
         struct slices_request one = *all;
         one.directions_count = 1;
         one.directions = all->directions + d;
-        one.lights_count = lit ? 2 : 0;
+        one.lights_count = !lit ? 0 : stack->shadows ? STACK_LIGHTS : STACK_LIGHTS / 2;
         one.lights = lights;
         status = size_of(workspace, scratch, plant, &stack->request, &longest_m, &one);
         if (status == STATUS_OK)
@@ -331,7 +344,7 @@ static enum status bake_all(struct workspace *workspace, struct stack *stack, bo
             plant_plan(workspace->arena, stack, pyramids + i * sides, texel_m, &stack->plants[i]);
     }
     for (size_t i = 0; i < stack->arrays_count && status == STATUS_OK && first; i++)
-        array_create(workspace->gl, &stack->request, &stack->arrays[i]);
+        array_create(workspace->gl, stack, &stack->arrays[i]);
     for (size_t i = 0; i < stack->plants_count * sides && status == STATUS_OK; i++)
         if (wanted[i / sides])
             side_upload(workspace, stack, &pyramids[i], &stack->plants[i / sides].sides[i % sides]);

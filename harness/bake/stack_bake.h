@@ -13,9 +13,11 @@ enum status stack_relight(struct workspace *workspace, struct stack *stack,
 void stack_steps(struct workspace *workspace, struct stack *stack);
 /* Which of stack->plants a tree is. */
 size_t stack_plant_index(const struct stack *stack, const struct instance *instance);
-/* The sun that is baked into one of stack->plants, seen from the front and from behind. */
+/* What is baked into one of stack->plants, seen from the front and from behind: the sun and the
+ * sky, then the sky alone, which only what receives shadows needs. */
+enum { STACK_LIGHTS = 4 };
 void stack_lights(const struct workspace *workspace, const struct stack *stack, size_t index,
-                  struct slices_light lights[2]);
+                  struct slices_light lights[STACK_LIGHTS]);
 /* The slices of a tree's species, of the nearest steps of its rotation and stretch.
  */
 const struct stack_plant *stack_plant_of(const struct stack *stack,

@@ -64,23 +64,25 @@ const struct stack_plant *stack_plant_of(const struct stack *stack, const struct
 }
 
 void stack_lights(const struct workspace *workspace, const struct stack *stack, size_t index,
-                  struct slices_light lights[2])
+                  struct slices_light lights[STACK_LIGHTS])
 {
     const struct scene *scene = stack->scene;
     size_t step = index % stack->steps_count, species = index / stack->steps_count;
     double angle = 2 * M_PI * (double)(step % turns_of(stack)) / (double)turns_of(stack);
     float c = (float)cos(angle), s = (float)sin(angle);
     const float *sun = stack->sun_direction;
-    for (int behind = 0; behind < 2; behind++) {
-        lights[behind] = (struct slices_light){
+    for (int light = 0; light < STACK_LIGHTS; light++) {
+        bool behind = light % 2, shaded = light / 2;
+        lights[light] = (struct slices_light){
             .sun_direction = {sun[0] * c - sun[2] * s, sun[1], sun[0] * s + sun[2] * c},
             .two_sided = workspace->effects & EFFECT_TWO_SIDED,
             .from_behind = behind};
         if (stack->stretches)
-            lights[behind].stretch =
+            lights[light].stretch =
                 stack->stretches[species * STACK_TALLS + step / turns_of(stack)];
-        memcpy(lights[behind].sun_radiance, scene->sun.radiance, sizeof scene->sun.radiance);
+        if (!shaded)
+            memcpy(lights[light].sun_radiance, scene->sun.radiance, sizeof scene->sun.radiance);
         if (workspace->effects & EFFECT_AMBIENT)
-            memcpy(lights[behind].ambient, scene->ambient, sizeof scene->ambient);
+            memcpy(lights[light].ambient, scene->ambient, sizeof scene->ambient);
     }
 }

@@ -16,6 +16,13 @@ static const char *const variant_defines[VARIANTS] = {"",
                                                       "SIFTED 1\nLEAF 1",
                                                       "SIFTED 1\nLIT_AT_VERTICES 1"};
 
+float triangles_tolerance_px(float error_px, enum lod lod)
+{
+    static const float allowances[] = {
+        [LOD_LOW] = 4, [LOD_INTERMEDIATE] = 2, [LOD_HIGH] = 0, [LOD_AUTO] = 1};
+    return error_px * allowances[lod];
+}
+
 float triangles_taper(const struct triangles *triangles)
 {
     return triangles->request.smooth ? 0.5f : 0;
@@ -84,10 +91,8 @@ static enum status prepare_programs(struct workspace *workspace, struct triangle
                          fog ? "FOG 1\n" : "", variant_defines[v]);
         const struct shadow_map *shadows = triangles->request.shadows;
         GLuint *program = &triangles->programs[v];
-        enum status status = shadows ? shadow_map_program(workspace, shadows, "triangles",
-                                                          triangles_glsl, defines, program)
-                                     : gl_program(workspace->gl, "triangles", triangles_glsl,
-                                                  defines, program, workspace->error);
+        enum status status = shadow_receiver_program(workspace, shadows, "triangles",
+                                                     triangles_glsl, defines, program);
         if (status != STATUS_OK)
             return status;
     }

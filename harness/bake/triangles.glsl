@@ -38,6 +38,9 @@ uniform float elements;            // of the plant
 uniform float taper;               // share of the run that is shrinking
 #endif
 uniform vec3 mean[2 * MEANS];  // bark and leaves of each species, lit, over the plant, of each step of stretch
+#ifdef SHADOWED
+uniform vec3 shaded_mean[2 * MEANS];  // the same out of the sun
+#endif
 uniform bool level_contrast;
 
 void main()
@@ -75,8 +78,14 @@ void main()
     vec3 lit = thin ? shade_leaf(albedo.rgb, n, facing) : shade_bark(albedo.rgb, n, facing);
     // One element stands for grow^2: the mean of so many varies grow times less (Cook et al. 2007, 3.3).
 #if defined(PRUNED)
+    int of = int(shape.y) + (leaf ? 1 : 0);
+#ifdef SHADOWED
+    vec3 others = mix(shaded_mean[of], mean[of], sun_visibility);
+#else
+    vec3 others = mean[of];
+#endif
     if (level_contrast)
-        lit = mix(mean[int(shape.y) + (leaf ? 1 : 0)], lit, min(1.0, 1.0 / grow));
+        lit = mix(others, lit, min(1.0, 1.0 / grow));
 #elif defined(SIFTED)
     if (level_contrast && albedo.w < 1.0)
         lit = mix(mean[owner], lit, albedo.w);

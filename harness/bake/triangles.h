@@ -27,6 +27,10 @@ struct triangles_request {
 
 struct triangles;
 
+/* tolerance_px by a method's option: that at lod=auto, twice as much at intermediate, four times at
+ * low, 0 at high. */
+float triangles_tolerance_px(float error_px, enum lod lod);
+
 /* Uploads the plants of all species that have trees. */
 enum status triangles_prepare(struct workspace *workspace, const struct scene *scene,
                               const struct triangles_request *request,

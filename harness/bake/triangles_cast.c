@@ -4,27 +4,16 @@
 
 #include <string.h>
 
-/* Whether a tree's sphere reaches into the map, whose perspective would need more than this. */
+/* Whether a tree's sphere reaches into the map. */
 static bool casts(const struct triangles *triangles, const struct shadow_fit *fit,
                   const struct instance *tree)
 {
     const struct cull_bound *bound = &triangles->bounds[tree->species];
-    if (fit->perspective)
-        return true;
-    double center[3] = {
+    double center_m[3] = {
         (double)tree->position_m[0],
         (double)(tree->position_m[1] + bound->center_y_m * tree->scale * tree->stretch),
         (double)tree->position_m[2]};
-    for (int row = 0; row < 2; row++) {
-        double at = fit->matrix[3][row], square = 0;
-        for (int i = 0; i < 3; i++) {
-            at += fit->matrix[i][row] * center[i];
-            square += fit->matrix[i][row] * fit->matrix[i][row];
-        }
-        if (fabs(at) > 1 + (double)(bound->radius_m * instance_reach(tree)) * sqrt(square))
-            return false;
-    }
-    return true;
+    return shadow_fit_meets(fit, center_m, (double)(bound->radius_m * instance_reach(tree)));
 }
 
 /* Counts the casters of each group, then lays them out one group behind the other. */

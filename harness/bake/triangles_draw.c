@@ -64,8 +64,16 @@ static bool is_within(const struct triangles *triangles, const struct instance *
     return cull_cylinder_holds(&cylinder, instance, view->eye_m, 2 * view->near_m);
 }
 
+/* The same view without a sun. */
+static struct view view_in_shade(const struct view *view)
+{
+    struct view dark = *view;
+    dark.sun_direction[0] = dark.sun_direction[1] = dark.sun_direction[2] = 0;
+    return dark;
+}
+
 /* Mean radiances of bark and leaves of a species, for elements that stand for many; of each step of
- * stretch. */
+ * stretch; where shadows are received, in the shade too. */
 static void mean_uniforms(struct workspace *workspace, const struct triangles *triangles,
                           GLuint program, size_t k, const struct view *view)
 {
@@ -78,6 +86,13 @@ static void mean_uniforms(struct workspace *workspace, const struct triangles *t
                                           triangles_mean_stretch(kind, step)};
         prune_mean_radiance(kind->probes, kind->probes_count, &light, mean);
         snprintf(name, sizeof name, "mean[%d]", 2 * (kind->first_mean + step));
+        gl->Uniform3fv(gl_uniform(gl, program, name), 2, mean[0]);
+        if (!triangles->request.shadows)
+            continue;
+        const struct view dark = view_in_shade(view);
+        const struct prune_light shade = {triangles->scene, &dark, light.effects, light.stretch};
+        prune_mean_radiance(kind->probes, kind->probes_count, &shade, mean);
+        snprintf(name, sizeof name, "shaded_mean[%d]", 2 * (kind->first_mean + step));
         gl->Uniform3fv(gl_uniform(gl, program, name), 2, mean[0]);
     }
 }
@@ -92,8 +107,7 @@ static void draw_call(struct workspace *workspace, const struct triangles *trian
             ->programs[call->batch ? triangles_variant(triangles, call->batch) : VARIANT_PRUNED];
     gl->UseProgram(program);
     shade_uniforms(workspace, program, triangles->scene, view);
-    if (triangles->request.shadows)
-        shadow_map_uniforms(workspace, triangles->request.shadows, program);
+    shadow_receiver_uniforms(workspace, triangles->request.shadows, program);
     if (!call->batch) {
         gl->Uniform1f(gl_uniform(gl, program, "elements"), (float)call->kind->levels.elements);
         gl->Uniform1f(gl_uniform(gl, program, "taper"), triangles_taper(triangles));

@@ -1,0 +1,20 @@
+/* Trees that cast into shadow maps as pictures: a quad a tree that faces the sun, of the picture of
+ * the plant that was taken from nearest to there (bake/atlas.h), alpha-tested, with the picture's
+ * own depths. */
+#ifndef TREELINE_BAKE_SHADOW_BILLBOARDS_H
+#define TREELINE_BAKE_SHADOW_BILLBOARDS_H
+
+#include "bake/shadow_map.h"
+
+struct shadow_billboards;
+
+/* Bakes the pictures of the scene's plants. STATUS_UNSUPPORTED where trees are stretched: their
+ * pictures would be others. */
+enum status shadow_billboards_prepare(struct workspace *workspace, const struct scene *scene,
+                                      const struct shadow_options *options,
+                                      struct shadow_billboards **billboards);
+/* Draws all trees that may shade a map's pass into what is bound. */
+void shadow_billboards_cast(struct workspace *workspace, const struct shadow_billboards *billboards,
+                            const struct shadow_pass *pass);
+
+#endif
