@@ -241,13 +241,13 @@ static bool is_seen(const struct shadow_trees *trees, const struct view *view, u
     return view_sees_sphere(view, center, bound->radius_m * instance_reach(instance) * 1.0001f);
 }
 
-void shadow_trees_indices(struct gl *gl, size_t first, size_t count)
+void shadow_trees_indices(struct gl *gl, size_t first, size_t count, uint32_t base)
 {
     enum { CALL_INDICES = 3 << 14 };
     for (size_t done = 0; done < count; done += CALL_INDICES) {
         size_t left = count - done, part = left < CALL_INDICES ? left : CALL_INDICES;
         gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)part, GL_UNSIGNED_INT,
-                         (first + done) * sizeof(uint32_t), 1, 0, 0);
+                         (first + done) * sizeof(uint32_t), 1, (GLint)base, 0);
         gl->Flush();
     }
 }
@@ -274,7 +274,7 @@ void shadow_trees_draw(struct workspace *workspace, const struct shadow_trees *t
                 first = count ? first : run->first;
                 count += run->count;
             } else if (count) {
-                shadow_trees_indices(gl, first, count);
+                shadow_trees_indices(gl, first, count, 0);
                 count = 0;
             }
         }

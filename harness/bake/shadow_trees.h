@@ -12,9 +12,10 @@ enum status shadow_trees_prepare(struct workspace *workspace, const struct scene
                                  int triangles_most, struct shadow_trees **trees);
 /* A vertex of the instance's plant in the world: the same floats that are drawn. */
 void shadow_trees_place(const struct instance *instance, const float point[3], float world_m[3]);
-/* Triangles of the bound vertex array by 32-bit indices, in calls of bounded size with a flush after
- * each: llvmpipe holds all triangles that it has not rasterised yet. */
-void shadow_trees_indices(struct gl *gl, size_t first, size_t count);
+/* Triangles of the bound vertex array by 32-bit indices, to which base is added, in calls of
+ * bounded size with a flush after each: llvmpipe holds all triangles that it has not rasterised
+ * yet. */
+void shadow_trees_indices(struct gl *gl, size_t first, size_t count, uint32_t base);
 void shadow_trees_draw(struct workspace *workspace, const struct shadow_trees *trees,
                        const struct view *view);
 

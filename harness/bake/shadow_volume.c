@@ -290,18 +290,19 @@ static bool is_counted(const struct shadow_volume *volume, const struct shadow_p
     return fails == z_fail && is_seen(piece, planes, volume->sun, endless);
 }
 
-/* A stretch of the pieces that are tested this way, neighbours in one call. */
+/* A stretch of the pieces that are tested this way, neighbours in one call. base: of points, 0 or
+ * points_count; then of their ends, of those that have some. */
 static void draw_stretch(struct gl *gl, const struct shadow_volume *volume, const bool *counted,
-                         enum stretch stretch)
+                         enum stretch stretch, size_t base)
 {
     size_t first = 0, count = 0;
     for (size_t p = 0; p <= volume->pieces_count; p++) {
         const struct shadow_piece *piece = &volume->pieces[p];
-        if (p < volume->pieces_count && counted[p]) {
+        if (p < volume->pieces_count && counted[p] && !(base && isnan(piece->floor_m))) {
             first = count ? first : piece->first[stretch];
             count += piece->count[stretch];
         } else if (count) {
-            shadow_trees_indices(gl, volume->offset[stretch] + first, count);
+            shadow_trees_indices(gl, volume->offset[stretch] + first, count, (uint32_t)base);
             count = 0;
         }
     }
@@ -317,14 +318,19 @@ static void draw_boundaries(struct gl *gl, const struct shadow_volume *volume, c
            back = z_fail ? GL_INCR_WRAP : GL_DECR_WRAP;
     gl->StencilOpSeparate(GL_FRONT, GL_KEEP, z_fail ? front : GL_KEEP, z_fail ? GL_KEEP : front);
     gl->StencilOpSeparate(GL_BACK, GL_KEEP, z_fail ? back : GL_KEEP, z_fail ? GL_KEEP : back);
-    draw_stretch(gl, volume, counted, WALLS);
-    if (z_fail)
-        draw_stretch(gl, volume, counted, CAPS);
+    draw_stretch(gl, volume, counted, WALLS, 0);
+    if (z_fail) {
+        draw_stretch(gl, volume, counted, CAPS, 0);
+        gl->FrontFace(GL_CW); /* as the caps, but seen from without below */
+        draw_stretch(gl, volume, counted, CAPS, volume->points_count);
+        draw_stretch(gl, volume, counted, LEAF_CAPS, volume->points_count);
+        gl->FrontFace(GL_CCW);
+    }
     gl->Enable(GL_CULL_FACE);
-    draw_stretch(gl, volume, counted, LEAF_CAPS);
+    draw_stretch(gl, volume, counted, LEAF_CAPS, 0);
     gl->CullFace(GL_FRONT);
     gl->DepthFunc(GL_LEQUAL);
-    draw_stretch(gl, volume, counted, LEAF_CAPS);
+    draw_stretch(gl, volume, counted, LEAF_CAPS, 0);
     gl->DepthFunc(GL_LESS);
     gl->CullFace(GL_BACK);
     gl->Disable(GL_CULL_FACE);
@@ -354,9 +360,9 @@ void shadow_volume_count(struct workspace *workspace, const struct shadow_volume
     gl->Enable(GL_DEPTH_CLAMP);
     gl->Enable(GL_STENCIL_TEST);
     gl->StencilFunc(GL_ALWAYS, 0, 0xff);
+    bool endless = !shadow_floor_is_below(volume->ground, view);
+    gl->Uniform1i(gl_uniform(gl, volume->program, "endless"), endless);
     for (int z_fail = 0; z_fail < 2; z_fail++) {
-        bool endless = z_fail || !shadow_floor_is_below(volume->ground, view);
-        gl->Uniform1i(gl_uniform(gl, volume->program, "endless"), endless);
         for (size_t p = 0; p < volume->pieces_count; p++)
             counted[p] = is_counted(volume, &volume->pieces[p], view, planes, z_fail, endless);
         draw_boundaries(gl, volume, counted, z_fail);

@@ -3,10 +3,10 @@
  *
  * What holds: the count is the true one modulo 256, in whatever order volumes come, since it wraps
  * both ways; a sample within a multiple of 256 volumes, but not 0, is taken for lit. Alpha-tested
- * triangles cast as if they were opaque. Volumes that are counted before a sample end in the ground
- * (bake/shadow_floor.h), which no eye above it can tell: to infinity they fill many times as many
- * pixels. The edge of a shadow lies where the rasteriser puts the
- * wall: exact to the depth buffer's resolution, z^2 / (near 2^24) at depth z. */
+ * triangles cast as if they were opaque. The edge of a shadow lies where the rasteriser puts the
+ * wall: exact to the depth buffer's resolution, z^2 / (near 2^24) at depth z. The time is fill: a
+ * tree of leaves has thousands of walls behind each pixel. So volumes end in the ground
+ * (bake/shadow_floor.h), which no eye above it can tell; before a sample they may be open there. */
 #ifndef TREELINE_BAKE_SHADOW_VOLUME_H
 #define TREELINE_BAKE_SHADOW_VOLUME_H
 
