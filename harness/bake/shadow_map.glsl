@@ -45,6 +45,16 @@ float shadow_tap(int cascade, vec2 uv, float depth, float range_m)
 }
 #endif
 
+// The normal that a bias needs, of the triangle that is drawn: a smooth one may be flatter to the sun than the triangle
+// is, which then shades itself. For fragment stages; where pixels are too small for float positions, the smooth normal.
+#define SHADOW_FACET(position, smooth_normal) shadow_facet(dFdx(position), dFdy(position), position, smooth_normal)
+vec3 shadow_facet(vec3 right, vec3 down, vec3 position, vec3 smooth_normal)
+{
+    vec3 facet = cross(right, down);
+    float least = 4e-5 * length(position);
+    return length(facet) > least * max(length(right), length(down)) ? facet : smooth_normal;
+}
+
 int shadow_cascade(vec3 position_m)
 {
     float depth_m = dot(position_m - eye_m, shadow_forward);
