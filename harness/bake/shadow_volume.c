@@ -186,8 +186,8 @@ static void place_ends(struct gl *gl, struct shadow_volume *volume, const float 
                             : NAN;
         for (size_t i = piece->base; i < last; i++) {
             const float *place = volume->places_m[i];
-            float along_m = fmaxf(0, place[1] - piece->floor_m) / sun[1];
             bool ended = !isnan(piece->floor_m);
+            float along_m = ended ? fmaxf(0, place[1] - piece->floor_m) / sun[1] : 0;
             for (int axis = 0; axis < 3; axis++)
                 ends[i][axis] = ended ? place[axis] - along_m * sun[axis] : -sun[axis];
             ends[i][3] = ended;
@@ -308,6 +308,10 @@ static void draw_stretch(struct gl *gl, const struct shadow_volume *volume, cons
     }
 }
 
+/* Depths of a cap and of its own surface are interpolated along other corners and differ in the
+ * last bits. */
+static const float cap_units = 4;
+
 /* A cap at its own surface's depth: a surface that the sun's side of the cap shows is without, what
  * faces away is within if it is bark, and without if it is a leaf. So back faces of leaves' caps
  * are the only ones that are before what is as deep. */
@@ -319,6 +323,8 @@ static void draw_boundaries(struct gl *gl, const struct shadow_volume *volume, c
     gl->StencilOpSeparate(GL_FRONT, GL_KEEP, z_fail ? front : GL_KEEP, z_fail ? GL_KEEP : front);
     gl->StencilOpSeparate(GL_BACK, GL_KEEP, z_fail ? back : GL_KEEP, z_fail ? GL_KEEP : back);
     draw_stretch(gl, volume, counted, WALLS, 0);
+    gl->Enable(GL_POLYGON_OFFSET_FILL);
+    gl->PolygonOffset(0, cap_units);
     if (z_fail) {
         draw_stretch(gl, volume, counted, CAPS, 0);
         gl->FrontFace(GL_CW); /* as the caps, but seen from without below */
@@ -330,10 +336,13 @@ static void draw_boundaries(struct gl *gl, const struct shadow_volume *volume, c
     draw_stretch(gl, volume, counted, LEAF_CAPS, 0);
     gl->CullFace(GL_FRONT);
     gl->DepthFunc(GL_LEQUAL);
+    gl->PolygonOffset(0, -cap_units);
     draw_stretch(gl, volume, counted, LEAF_CAPS, 0);
     gl->DepthFunc(GL_LESS);
     gl->CullFace(GL_BACK);
     gl->Disable(GL_CULL_FACE);
+    gl->PolygonOffset(0, 0);
+    gl->Disable(GL_POLYGON_OFFSET_FILL);
 }
 
 void shadow_volume_count(struct workspace *workspace, const struct shadow_volume *volume,
