@@ -1,9 +1,8 @@
 /* The ray march: kernels against closed forms and each other, pictures against the reference. */
 #include "testing.h"
 
+#include "march_block.h"
 #include "march_world.h"
-
-#include "bake/march_parts.h"
 
 #include <stdlib.h>
 
@@ -13,7 +12,7 @@ struct slab {
     struct voxel voxel;
     uint32_t cells[8 * 6 * 5];
     struct march_job job;
-    struct march_rays rays;
+    struct block rays;
 };
 
 static const struct march_form unit = {{1}}, third = {{1.0f / 3}};
@@ -39,10 +38,7 @@ static void slab_fill(struct slab *slab, float extinction, const float eye[3], c
     for (int c = 0; c < 3; c++)
         job->shade[c] = 1.0f / 255; /* every voxel glows with radiance 1 */
     job->clear = 1;
-    for (int i = 0; i < MARCH_RAYS; i++) {
-        slab->rays.left[i] = 1;
-        slab->rays.depths_m[i] = INFINITY;
-    }
+    block_open(&slab->rays);
 }
 
 /* Length of a ray within the box, in double. */
@@ -84,8 +80,8 @@ static void test_march__a_homogeneous_box_lets_exp_of_its_depth_through_from_any
             for (int part = 1; part <= 4; part *= 4) {
                 slab_fill(&slab, 0.3f, eye, ray);
                 slab.job.step = 1.0f / (float)part; /* however it is cut */
-                isas[isa].block(&slab.job, &slab.rays);
-                for (int lane = 0; lane < MARCH_RAYS; lane++) {
+                block_march(&isas[isa], &slab.job, &slab.rays);
+                for (int lane = 0; lane < BLOCK_RAYS; lane++) {
                     assert_true(fabs(slab.rays.left[lane] - expected) < 2e-5);
                     /* Kajiya and Kay: a medium of radiance 1 gives 1 - T */
                     assert_true(fabs(slab.rays.rgb[lane][0] + slab.rays.left[lane] - 1) < 1e-5);
@@ -103,20 +99,20 @@ static void test_march__nothing_hides_nothing_and_opaque_all(void **state)
     struct slab slab;
     for (size_t isa = 0; isa < count; isa++) {
         slab_fill(&slab, 0, eye, ray);
-        assert_true(isas[isa].block(&slab.job, &slab.rays));
+        assert_int_equal(0, block_march(&isas[isa], &slab.job, &slab.rays));
         assert_true(slab.rays.left[0] == 1 && slab.rays.rgb[0][0] == 0);
         slab_fill(&slab, 1e6f, eye, ray);
-        assert_false(isas[isa].block(&slab.job, &slab.rays));
+        assert_int_equal(BLOCK_RAYS, block_march(&isas[isa], &slab.job, &slab.rays));
         assert_true(slab.rays.left[0] < 1e-30f && fabsf(slab.rays.rgb[0][0] - 1) < 1e-6f);
         slab_fill(&slab, 1e6f, eye, away);
-        isas[isa].block(&slab.job, &slab.rays);
+        block_march(&isas[isa], &slab.job, &slab.rays);
         assert_true(slab.rays.left[0] == 1);
         slab_fill(&slab, 1e6f, eye, ray); /* something stands before the box */
         slab.rays.depths_m[0] = 2.9f;
-        isas[isa].block(&slab.job, &slab.rays);
+        block_march(&isas[isa], &slab.job, &slab.rays);
         assert_true(slab.rays.left[0] == 1 && slab.rays.left[1] < 1e-30f);
         slab_fill(&slab, 0.3f, (const float[3]){4, 3, 2}, ray); /* the eye within */
-        isas[isa].block(&slab.job, &slab.rays);
+        block_march(&isas[isa], &slab.job, &slab.rays);
         assert_true(fabs(slab.rays.left[0] - exp(-0.3 * 4)) < 2e-5);
     }
 }
@@ -193,7 +189,7 @@ static void light_check(double cone, double evenness, double tolerance)
                 slab.job.shade[c] = 0;
                 slab.job.sun[c] = 1.0f / 255;
             }
-            isas[0].block(&slab.job, &slab.rays);
+            block_march(&isas[0], &slab.job, &slab.rays);
             assert_true(fabs(slab.rays.rgb[0][1] - (sided ? single : two)) < tolerance);
         }
     }
@@ -236,9 +232,57 @@ static void test_march__every_instruction_set_gives_the_same_bits(void **state)
             slabs[isa].job.voxels = (const uint32_t *)(const void *)&slabs[isa].voxel;
         }
         for (size_t isa = 0; isa < count; isa++) {
-            isas[isa].block(&slabs[isa].job, &slabs[isa].rays);
+            block_march(&isas[isa], &slabs[isa].job, &slabs[isa].rays);
             assert_memory_equal(&slabs[isa].rays, &slabs[0].rays, sizeof slabs->rays);
         }
+    }
+}
+
+enum { MANY_ACROSS = 23, MANY_DOWN = 17, MANY = MANY_ACROSS * MANY_DOWN };
+struct many {
+    float left[MANY + MARCH_ROOM], depths_m[MANY + MARCH_ROOM], rgb[MANY][4];
+};
+
+/* Some are closed before, some end within. */
+static void many_open(struct many *many)
+{
+    struct random random = random_seed(3, 8);
+    memset(many, 0, sizeof *many);
+    for (int i = 0; i < MANY; i++) {
+        many->left[i] = random_below(&random, 4) ? 1 - 0.9f * random_float(&random) : 0.01f;
+        many->depths_m[i] = random_below(&random, 4) ? INFINITY : 10 * random_float(&random);
+    }
+}
+
+/* A ray's bits do not depend on which others go with it, in which lanes and in which order. */
+static void test_march__a_ray_gives_the_same_bits_alone_and_among_others(void **state)
+{
+    (void)state;
+    struct march_isa isas[4];
+    const size_t count = march_isas(isas);
+    struct random random = random_seed(7, 4);
+    struct slab slab;
+    slab_fill(&slab, 1.3f, (const float[3]){-4, 2.8f, 2.1f}, (const float[3]){1, -0.35f, -0.3f});
+    for (int i = 0; i < 8 * 6 * 5; i++)
+        slab.cells[i] = random_below(&random, 3) ? 1 : VOXELS_FIRST;
+    slab.job.right[1] = 0.7f / MANY_ACROSS;
+    slab.job.down[2] = 0.6f / MANY_DOWN;
+    slab.job.stop = 0.02f;
+    struct many alone, among;
+    const struct march_rect all = {{0, 0}, {MANY_ACROSS - 1, MANY_DOWN - 1}};
+    many_open(&alone);
+    struct march_rays rays = {MANY_ACROSS, alone.left, alone.rgb, alone.depths_m, 0};
+    int closed = 0;
+    for (int i = 0; i < MANY; i++) {
+        const int x = i % MANY_ACROSS, y = i / MANY_ACROSS;
+        closed += isas[0].kernel(&slab.job, &(struct march_rect){{x, y}, {x, y}}, &rays);
+    }
+    assert_in_range(closed, MANY / 10, MANY / 2);
+    for (size_t isa = 0; isa < count; isa++) {
+        many_open(&among);
+        rays = (struct march_rays){MANY_ACROSS, among.left, among.rgb, among.depths_m, 0};
+        assert_int_equal(closed, isas[isa].kernel(&slab.job, &all, &rays));
+        assert_memory_equal(&among, &alone, sizeof among);
     }
 }
 
@@ -429,6 +473,7 @@ int main(void)
         cmocka_unit_test(test_march__nothing_hides_nothing_and_opaque_all),
         cmocka_unit_test(test_march__light_of_leaves_is_that_of_quadrature),
         cmocka_unit_test(test_march__every_instruction_set_gives_the_same_bits),
+        cmocka_unit_test(test_march__a_ray_gives_the_same_bits_alone_and_among_others),
         cmocka_unit_test(test_march__a_ball_of_leaves_covers_and_shines_as_traced),
         cmocka_unit_test(test_march__a_ball_of_leaves_covers_as_traced_by_every_model),
         cmocka_unit_test(test_march__overlapping_trees_and_one_within_another_cover_as_traced),

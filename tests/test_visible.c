@@ -2,9 +2,9 @@
  * means against every direction of the triangles' normals. */
 #include "testing.h"
 
+#include "march_block.h"
 #include "reference_world.h"
 
-#include "bake/march_parts.h"
 #include "bake/voxels_parts.h"
 #include "bake/voxels_visible.h"
 
@@ -112,7 +112,7 @@ struct lone {
     struct voxel voxel;
     uint32_t cell;
     struct march_job job;
-    struct march_rays rays;
+    struct block rays;
 };
 
 /* A voxel of area 1 per side with the normals, seen and lit from the directions; one_sided: 0, 1.
@@ -149,10 +149,7 @@ static void lone_fill(struct lone *lone, const double mean[3], const double eye[
         job->cosine += (float)(eye[i] * sun[i]);
         job->sun[i] = 1.0f / 255;
     }
-    for (int i = 0; i < MARCH_RAYS; i++) {
-        lone->rays.left[i] = 1;
-        lone->rays.depths_m[i] = INFINITY;
-    }
+    block_open(&lone->rays);
 }
 
 /* Normals about z, seen and lit from anywhere: what hides and what it sends, by every kernel. */
@@ -172,7 +169,7 @@ static void test_visible__area_and_light_are_those_of_quadrature_in_any_directio
         for (size_t isa = 0; isa < count; isa++) {
             struct lone lone;
             lone_fill(&lone, mean, eye, sun, (float)(n % 2));
-            isas[isa].block(&lone.job, &lone.rays);
+            block_march(&isas[isa], &lone.job, &lone.rays);
             double depth = -log((double)lone.rays.left[0]);
             double light = (double)lone.rays.rgb[1][0] / (1 - (double)lone.rays.left[0]);
             double sent = n % 2 ? means.odd : means.even; /* per area of leaf */
@@ -197,11 +194,11 @@ static void test_visible__leaves_that_lie_alike_hide_nothing_edge_on(void **stat
         mean[axis] = along[axis] = across[(axis + 1) % 3] = 1;
         struct lone lone;
         lone_fill(&lone, mean, along, along, 0);
-        isas[0].block(&lone.job, &lone.rays);
+        block_march(&isas[0], &lone.job, &lone.rays);
         assert_true(fabs(-log((double)lone.rays.left[0]) - 1) < 0.01);
         assert_true(fabs((double)lone.rays.rgb[0][0] / (1 - (double)lone.rays.left[0]) - 1) < 0.01);
         lone_fill(&lone, mean, across, along, 0);
-        isas[0].block(&lone.job, &lone.rays);
+        block_march(&isas[0], &lone.job, &lone.rays);
         assert_true(lone.rays.left[0] > 0.98f);
     }
 }

@@ -3,7 +3,8 @@
 
 #include "bake/march_kernel.h"
 
-bool march_block_avx2(const struct march_job *job, struct march_rays *rays)
+int march_kernel_avx2(const struct march_job *job, const struct march_rect *rect,
+                      struct march_rays *rays)
 {
-    return march_all(job, rays);
+    return march_all(job, rect, rays);
 }

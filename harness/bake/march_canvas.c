@@ -23,19 +23,15 @@ void canvas_begin(struct canvas *canvas, const struct march_view *picture, int x
         memset(canvas->suns, 0, (size_t)(side * side) * sizeof *canvas->suns);
     backdrop_cpu_tile(canvas->backdrop, &canvas->tile);
     canvas->lookups = 0;
-    canvas->across = side / MARCH_BLOCK;
-    canvas->blocks_count = canvas->open_count = canvas->across * canvas->across;
-    memset(canvas->blocks, 0, (size_t)canvas->blocks_count * sizeof *canvas->blocks);
-    for (int row = 0; row < canvas->tile.height_px; row++)
-        for (int column = 0; column < canvas->tile.width_px; column++) {
-            struct march_rays *rays =
-                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
-            int lane = row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK;
-            rays->left[lane] = 1;
-            rays->depths_m[lane] = canvas->depths_m[row * side + column];
+    canvas->rays = (struct march_rays){side, canvas->left, canvas->gathered, canvas->depths_m, 0};
+    canvas->stop = picture->options.stop;
+    canvas->open_count = canvas->tile.width_px * canvas->tile.height_px;
+    memset(canvas->gathered, 0, (size_t)(side * side) * sizeof *canvas->gathered);
+    for (int row = 0; row < side; row++)
+        for (int column = 0; column < side; column++) {
+            bool within = row < canvas->tile.height_px && column < canvas->tile.width_px;
+            canvas->left[row * side + column] = within ? 1 : 0;
         }
-    for (int block = 0; block < canvas->blocks_count; block++)
-        canvas->open[block] = true;
 }
 
 void canvas_shade(struct canvas *canvas, const struct march_view *picture)
@@ -45,10 +41,7 @@ void canvas_shade(struct canvas *canvas, const struct march_view *picture)
     for (int row = 0; row < tile->height_px; row++)
         for (int column = 0; column < tile->width_px; column++) {
             const int at = row * tile->stride + column;
-            const struct march_rays *rays =
-                &canvas->blocks[row / MARCH_BLOCK * canvas->across + column / MARCH_BLOCK];
-            float left = rays->left[row % MARCH_BLOCK * MARCH_BLOCK + column % MARCH_BLOCK];
-            if (!(canvas->suns[at] > 0) || left <= picture->options.stop)
+            if (!(canvas->suns[at] > 0) || canvas->left[at] <= picture->options.stop)
                 continue;
             float place_m[3];
             for (int i = 0; i < 3; i++)
@@ -65,36 +58,24 @@ void canvas_shade(struct canvas *canvas, const struct march_view *picture)
         }
 }
 
-/* A row of a block, count pixels of it. behind: what the backdrop shows there. */
-static void row_end(const struct march_rays *rays, int first, int count, float stop,
-                    const float (*behind)[3], float *pixels)
-{
-    for (int k = 0; k < count; k++, pixels += 4) {
-        const float *rgb = rays->rgb[first + k], left = rays->left[first + k];
-        float gain = 1, rest = left;
-        if (left <= stop) { /* what was left would have been more of the same */
-            gain = 1 / (1 - left);
-            rest = 0;
-        }
-        for (int c = 0; c < 3; c++)
-            pixels[c] = gain * rgb[c] + rest * behind[k][c];
-        pixels[3] = 1 - rest;
-    }
-}
+typedef float four __attribute__((vector_size(4 * sizeof(float))));
 
-/* Pixels outside the picture were never opened. */
-void canvas_end(const struct canvas *canvas, float stop, const struct view *view, float *pixels)
+void canvas_end(const struct canvas *canvas, const struct view *view, float *pixels)
 {
     const struct backdrop_tile *tile = &canvas->tile;
     for (int row = 0; row < tile->height_px; row++) {
-        const struct march_rays *rays = &canvas->blocks[row / MARCH_BLOCK * canvas->across];
-        const float(*behind)[3] = (const float(*)[3])canvas->rgb + row * tile->stride;
         float *to =
             pixels + 4 * ((size_t)(tile->y_px + row) * (size_t)view->width_px + (size_t)tile->x_px);
-        for (int column = 0; column < tile->width_px; column += MARCH_BLOCK) {
-            int rest = tile->width_px - column, first = row % MARCH_BLOCK * MARCH_BLOCK;
-            row_end(rays++, first, rest < MARCH_BLOCK ? rest : MARCH_BLOCK, stop, behind + column,
-                    to + 4 * column);
+        for (int at = row * tile->stride, end = at + tile->width_px; at < end; at++, to += 4) {
+            const float left = canvas->left[at], *behind = canvas->rgb[at];
+            /* what is left of a closed one would have been more of the same */
+            const bool closed = left <= canvas->stop;
+            const float gain = closed ? 1 / (1 - left) : 1, rest = closed ? 0 : left;
+            four pixel;
+            memcpy(&pixel, canvas->gathered[at], sizeof pixel);
+            pixel = gain * pixel + rest * (four){behind[0], behind[1], behind[2], 0};
+            pixel[3] = 1 - rest;
+            memcpy(to, &pixel, sizeof pixel);
         }
     }
 }
@@ -125,22 +106,28 @@ static float splat_share(const struct march_splat *splat, float area)
     return 1 - 1 / grown;
 }
 
+void canvas_over(struct canvas *canvas, int at, float share)
+{
+    const float before = canvas->left[at], after = before - share;
+    canvas->left[at] = after;
+    canvas->open_count -= before > canvas->stop && !(after > canvas->stop);
+}
+
 static void splat_pixel(struct canvas *canvas, const struct march_splat *splat,
                         const struct backdrop_rays *picture_rays, int column, int row)
 {
     int x = splat->x_px + column - canvas->tile.x_px, y = splat->y_px + row - canvas->tile.y_px;
     if (x < 0 || y < 0 || x >= canvas->tile.width_px || y >= canvas->tile.height_px)
         return;
-    struct march_rays *rays = &canvas->blocks[y / MARCH_BLOCK * canvas->across + x / MARCH_BLOCK];
-    int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
+    const int at = y * canvas->tile.stride + x;
     if (canvas_hides(splat, picture_rays, (float)(splat->x_px + column), (float)(splat->y_px + row),
-                     rays->depths_m[lane]))
+                     canvas->depths_m[at]))
         return;
     float area = splat->area_px2 * splat->across[column] * splat->along[row];
-    float share = rays->left[lane] * splat_share(splat, area);
-    rays->left[lane] -= share;
+    float share = canvas->left[at] * splat_share(splat, area);
+    canvas_over(canvas, at, share);
     for (int c = 0; c < 3; c++)
-        rays->rgb[lane][c] += share * splat->rgb[c];
+        canvas->gathered[at][c] += share * splat->rgb[c];
 }
 
 void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
@@ -158,9 +145,9 @@ struct march_part {
     float thinned;
 };
 
-static int block_clamp(int at, int across)
+static int pixel_clamp(int at, int count)
 {
-    return at < 0 ? 0 : at >= across ? across - 1 : at;
+    return at < 0 ? 0 : at >= count ? count - 1 : at;
 }
 
 /* At a level, but for a share of its density. */
@@ -169,28 +156,22 @@ static void march_level(struct canvas *canvas, const struct march_view *picture,
                         const struct march_part *part)
 {
     const float voxel_m = picture->species[tree->species].voxels->levels[part->level].voxel_m;
-    const float half = 0.5f * (float)(canvas->tile.stride - 1);
-    const int from[2] = {canvas->tile.x_px, canvas->tile.y_px};
-    int low[2], high[2];
+    const struct backdrop_tile *tile = &canvas->tile;
+    const float half = 0.5f * (float)(tile->stride - 1);
+    const float x_px = (float)tile->x_px, y_px = (float)tile->y_px;
+    const int from[2] = {tile->x_px, tile->y_px}, sizes[2] = {tile->width_px, tile->height_px};
+    struct march_rect rect;
     struct march_job job;
-    march_job_fill(picture, tree, part->level, (float)from[0] + half, (float)from[1] + half, &job);
+    march_job_fill(picture, tree, part->level, x_px + half, y_px + half, &job);
+    march_job_aim(picture, tree, x_px, y_px, voxel_m, &job);
     job.near_m = fmaxf(job.near_m, part->from_m);
     job.far_m = part->to_m;
     job.thinned = seen->within ? 1 - march_solid : part->thinned;
     for (int i = 0; i < 2; i++) {
-        low[i] = block_clamp((seen->low[i] - from[i]) / MARCH_BLOCK, canvas->across);
-        high[i] = block_clamp((seen->high[i] - from[i]) / MARCH_BLOCK, canvas->across);
+        rect.low[i] = pixel_clamp(seen->low[i] - from[i], sizes[i]);
+        rect.high[i] = pixel_clamp(seen->high[i] - from[i], sizes[i]);
     }
-    for (int y = low[1]; y <= high[1]; y++)
-        for (int x = low[0]; x <= high[0]; x++) {
-            int block = y * canvas->across + x;
-            if (!canvas->open[block])
-                continue;
-            march_job_aim(picture, tree, (float)(from[0] + x * MARCH_BLOCK),
-                          (float)(from[1] + y * MARCH_BLOCK), voxel_m, &job);
-            canvas->open[block] = canvas->block(&job, &canvas->blocks[block]);
-            canvas->open_count -= !canvas->open[block];
-        }
+    canvas->open_count -= canvas->kernel(&job, &rect, &canvas->rays);
 }
 
 /* The levels' transmittances multiply, so that the share of one in the exponent grows evenly. */

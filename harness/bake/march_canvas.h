@@ -4,20 +4,22 @@
 
 #include "bake/march_job.h"
 
-enum { TILE_MAX = 64, TILE_BLOCKS_MAX = (TILE_MAX / MARCH_BLOCK) * (TILE_MAX / MARCH_BLOCK) };
+enum { TILE_MAX = 64 };
 
 /* The first two are given. */
 struct canvas {
     struct backdrop_cpu *backdrop;
-    march_block *block;
-    struct march_rays blocks[TILE_BLOCKS_MAX];
-    bool open[TILE_BLOCKS_MAX]; /* more can be seen through it */
-    float depths_m[TILE_MAX * TILE_MAX];
-    float rgb[TILE_MAX * TILE_MAX][3];
-    float suns[TILE_MAX * TILE_MAX]; /* where the sun has shadows */
+    march_kernel *kernel;
+    struct march_rays rays;
+    /* Of pixels; columns and rows outside of the picture are never opened. */
+    float left[TILE_MAX * TILE_MAX + MARCH_ROOM], depths_m[TILE_MAX * TILE_MAX + MARCH_ROOM];
+    float gathered[TILE_MAX * TILE_MAX][4]; /* radiance */
+    float rgb[TILE_MAX * TILE_MAX][3];      /* of what is behind the trees */
+    float suns[TILE_MAX * TILE_MAX];        /* where the sun has shadows */
     struct backdrop_tile tile;
     uint64_t lookups; /* of far pictures */
-    int across, blocks_count, open_count;
+    int open_count;   /* pixels through which more can be seen */
+    float stop;       /* a pixel is closed at this transmittance */
 };
 
 /* The tile whose upper left pixel is (x, y), of side_px. */
@@ -33,6 +35,8 @@ void canvas_sprite(struct canvas *canvas, const struct march_view *picture,
 /* Whether what is behind hides a splat from a pixel. */
 bool canvas_hides(const struct march_splat *splat, const struct backdrop_rays *picture_rays,
                   float x_px, float y_px, float behind_m);
+/* Takes a share of the light from a pixel, its number in the tile. */
+void canvas_over(struct canvas *canvas, int at, float share);
 /* What lies between two depths along the view, m. */
 void canvas_march(struct canvas *canvas, const struct march_view *picture,
                   const struct march_tree *tree, const struct march_seen *seen, float from_m,
@@ -40,6 +44,6 @@ void canvas_march(struct canvas *canvas, const struct march_view *picture,
 /* Shadows on the terrain, where it is still seen. */
 void canvas_shade(struct canvas *canvas, const struct march_view *picture);
 /* pixels: of the picture, height x width x 4. */
-void canvas_end(const struct canvas *canvas, float stop, const struct view *view, float *pixels);
+void canvas_end(const struct canvas *canvas, const struct view *view, float *pixels);
 
 #endif

@@ -101,7 +101,8 @@ static void all_turns(const struct march_far *turns, const float *shares, struct
     }
 }
 
-void march_fars_make(struct march_fars *fars, const struct march_view *picture, march_block *block)
+void march_fars_make(struct march_fars *fars, const struct march_view *picture,
+                     march_kernel *kernel)
 {
     const struct view *view = picture->view;
     const size_t places = fars->species_count * CORNERS;
@@ -116,8 +117,8 @@ void march_fars_make(struct march_fars *fars, const struct march_view *picture, 
             if (for_all || is_asked(fars, place, turn))
                 march_far_fill(picture, species, (uint32_t)turn,
                                (float)(corner % SIDE) / CUTS * (float)view->width_px - 0.5f,
-                               (float)(corner / SIDE) / CUTS * (float)view->height_px - 0.5f, block,
-                               &fars->all[place * KINDS + turn], &fars->sprites[k]);
+                               (float)(corner / SIDE) / CUTS * (float)view->height_px - 0.5f,
+                               kernel, &fars->all[place * KINDS + turn], &fars->sprites[k]);
         }
 #pragma omp for schedule(static)
         for (size_t place = 0; place < places; place++)

@@ -16,7 +16,8 @@ void march_fars_begin(struct march_fars *fars);
  * a place in the picture. */
 void march_fars_ask(struct march_fars *fars, int thread, const struct view *view, uint32_t species,
                     uint32_t turn, const float at_px[2]);
-void march_fars_make(struct march_fars *fars, const struct march_view *picture, march_block *block);
+void march_fars_make(struct march_fars *fars, const struct march_view *picture,
+                     march_kernel *kernel);
 /* What was asked for. */
 struct march_far march_fars_at(const struct march_fars *fars, const struct view *view,
                                uint32_t species, uint32_t turn, const float at_px[2]);

@@ -3,7 +3,6 @@
 #include "bake/march_shadow.h"
 
 #include <math.h>
-#include <string.h>
 
 static float dot3(const float a[3], const float b[3])
 {
@@ -240,111 +239,6 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     if (picture->shadows)
         march_shadows_fill(picture->shadows, tree, level, job);
     fog_fill(picture, &box, job);
-}
-
-enum { FAR_SIDE = 2 * SPRITE_SIDE };
-
-/* Adds a block of rays to the sums, and to the texels, of four rays each. */
-static void far_gather(const struct march_rays *rays, int column, int row, struct march_far *far,
-                       struct march_sprite *sprite)
-{
-    for (int lane = 0; lane < MARCH_RAYS; lane++) {
-        int x = (column + lane % MARCH_BLOCK) / 2, y = (row + lane / MARCH_BLOCK) / 2;
-        float *texel = sprite->sums[y + 1][x + 1], cover = 1 - rays->left[lane];
-        far->cover_m2 += cover;
-        texel[3] += 0.25f * cover;
-        for (int c = 0; c < 3; c++) {
-            far->rgb[c] += rays->rgb[lane][c];
-            texel[c] += 0.25f * rays->rgb[lane][c];
-        }
-    }
-}
-
-/* The box before the eye on the ray, far away, in FAR_SIDE x FAR_SIDE rays; what is covered in the
- * plane through its middle along the screen. Fog is left to each tree. */
-static void sprite_sum(struct march_sprite *sprite)
-{
-    for (int y = 1; y <= SPRITE_SIDE; y++)
-        for (int x = 1; x <= SPRITE_SIDE; x++)
-            for (int c = 0; c < 4; c++)
-                sprite->sums[y][x][c] += sprite->sums[y - 1][x][c] + sprite->sums[y][x - 1][c] -
-                                         sprite->sums[y - 1][x - 1][c];
-}
-
-/* The sun's part of what rays see of a tree. */
-static void far_sun_add(const struct march_job *job, march_block *block, struct march_rays *rays,
-                        struct march_far *far)
-{
-    struct march_job sun = *job;
-    memset(sun.shade, 0, sizeof sun.shade);
-    block(&sun, rays);
-    for (int lane = 0; lane < MARCH_RAYS; lane++)
-        for (int c = 0; c < 3; c++)
-            far->sun_rgb[c] += rays->rgb[lane][c];
-}
-
-void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
-                    float y_px, march_block *block, struct march_far *far,
-                    struct march_sprite *sprite)
-{
-    const float angle = 6.2831853f * (float)turn / MARCH_TURNS;
-    const struct view *view = picture->view;
-    const struct voxels *voxels = picture->species[species].voxels;
-    const float depth_m = 2000 * picture->species[species].radius_m;
-    struct march_view away = *picture;
-    struct march_tree tree = {.cosine = cosf(angle),
-                              .sine = sinf(angle),
-                              .scale = 1,
-                              .stretch = 1,
-                              .species = species,
-                              .turn = (uint16_t)turn,
-                              .alone = true};
-    struct march_box box = march_box_of(view, &tree, voxels, 0);
-    float ray[3], sides_m[2];
-    for (int i = 0; i < 3; i++)
-        ray[i] =
-            picture->rays.first[i] + x_px * picture->rays.right[i] + y_px * picture->rays.down[i];
-    for (int i = 0; i < 3; i++) /* its middle stands on the ray */
-        tree.position_m[i] = depth_m * ray[i] - box.middle_m[i];
-    for (int k = 0; k < 2; k++) {
-        const float *axis = k ? view->up : view->right;
-        sides_m[k] = 2 * march_box_spread(&box, axis, view->forward, dot3(ray, axis)) / FAR_SIDE;
-    }
-    for (int i = 0; i < 3; i++) {
-        away.rays.right[i] = sides_m[0] / depth_m * view->right[i];
-        away.rays.down[i] = -sides_m[1] / depth_m * view->up[i];
-        away.rays.first[i] =
-            ray[i] - 0.5f * (FAR_SIDE - 1) * (away.rays.right[i] + away.rays.down[i]);
-    }
-    float level = floorf(log2f(sqrtf(sides_m[0] * sides_m[1]) / voxels->levels[0].voxel_m));
-    level = fminf(fmaxf(level, 0), (float)(voxels->levels_count - 1));
-    away.effects &= ~(unsigned)EFFECT_FOG;
-    struct march_job job;
-    const float middle = 0.5f * (FAR_SIDE - 1), voxel_m = voxels->levels[(int)level].voxel_m;
-    march_job_fill(&away, &tree, (uint32_t)level, middle, middle, &job);
-    *far = (struct march_far){0};
-    *sprite = (struct march_sprite){.sides_m = {FAR_SIDE * sides_m[0], FAR_SIDE * sides_m[1]}};
-    for (int at = 0; at < FAR_SIDE * FAR_SIDE; at += MARCH_RAYS) {
-        const int column = at / MARCH_BLOCK % FAR_SIDE;
-        const int row = at / MARCH_BLOCK / FAR_SIDE * MARCH_BLOCK;
-        struct march_rays rays = {.left = {0}};
-        march_job_aim(&away, &tree, (float)column, (float)row, voxel_m, &job);
-        for (int lane = 0; lane < MARCH_RAYS; lane++) {
-            rays.left[lane] = 1;
-            rays.depths_m[lane] = 2 * depth_m;
-        }
-        struct march_rays lit = rays;
-        block(&job, &rays);
-        far_gather(&rays, column, row, far, sprite);
-        if (picture->shadows)
-            far_sun_add(&job, block, &lit, far);
-    }
-    sprite_sum(sprite);
-    for (int c = 0; c < 3; c++) {
-        far->rgb[c] = far->cover_m2 > 0 ? far->rgb[c] / far->cover_m2 : 0;
-        far->sun_rgb[c] = far->cover_m2 > 0 ? far->sun_rgb[c] / far->cover_m2 : 0;
-    }
-    far->cover_m2 *= sides_m[0] * sides_m[1];
 }
 
 /* A rectangle's even spread cut to the pixels along an axis; returns the first. */

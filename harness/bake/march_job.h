@@ -87,7 +87,7 @@ struct march_sprite {
     float sides_m[2]; /* right, down; for scale 1 */
 } __attribute__((aligned(16)));
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
-                    float y_px, march_block *block, struct march_far *far,
+                    float y_px, march_kernel *kernel, struct march_far *far,
                     struct march_sprite *sprite);
 
 /* What is hardly larger than a pixel: spread evenly over a rectangle of the picture. */

@@ -21,6 +21,10 @@ static inline lanes_mask lanes_int_less(lanes_int a, lanes_int b)
 {
     return (lanes_mask)(a < b);
 }
+static inline lanes_mask lanes_int_same(lanes_int a, lanes_int b)
+{
+    return (lanes_mask)(a == b);
+}
 static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 {
     return a & b;
@@ -68,31 +72,11 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (__m256i)at, (__m256i)mask, 4);
 }
 
-/* Two words from each place, whatever where the mask is not set. */
-static inline void lanes_gather_two(const uint32_t *words, lanes_int at, lanes_mask mask,
-                                    lanes_int got[2])
-{
-    __m256 low, high;
-    __m128 pairs[4];
-    at &= mask;
-    for (int i = 0; i < 4; i++) {
-        const uint32_t *first = words + at[2 * i], *second = words + at[2 * i + 1];
-        pairs[i] = _mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)first));
-        pairs[i] = _mm_loadh_pi(pairs[i], (const __m64 *)(const void *)second);
-    }
-    low = _mm256_insertf128_ps(_mm256_castps128_ps256(pairs[0]), pairs[2], 1);
-    high = _mm256_insertf128_ps(_mm256_castps128_ps256(pairs[1]), pairs[3], 1);
-    got[0] = (lanes_int)_mm256_shuffle_ps(low, high, 0x88);
-    got[1] = (lanes_int)_mm256_shuffle_ps(low, high, 0xdd);
-}
-
-/* Four words from each place, whatever where the mask is not set. Eight loads and a transposition:
+/* Four words from each place. Eight loads and a transposition:
  * gathers of single words take twice the time. */
-static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_mask mask,
-                                     lanes_int got[4])
+static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_int got[4])
 {
     __m256i pairs[4], mixed[4];
-    at &= mask;
     for (int i = 0; i < 4; i++) {
         __m128i low = _mm_loadu_si128((const __m128i *)(const void *)(words + at[i]));
         __m128i high = _mm_loadu_si128((const __m128i *)(const void *)(words + at[i + 4]));
@@ -109,23 +93,28 @@ static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_
 }
 
 /* The byte at a place and the next in bits 0 to 15, whatever above them. Reads four bytes. */
-static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, lanes_mask mask)
+static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at)
 {
-    return (lanes_int)_mm256_mask_i32gather_epi32(
-        _mm256_setzero_si256(), (const int *)(const void *)bytes, (__m256i)at, (__m256i)mask, 1);
+    return (lanes_int)_mm256_i32gather_epi32((const int *)(const void *)bytes, (__m256i)at, 1);
 }
 
-/* Where the mask is set, in their order; what follows them is overwritten, LANES in all. */
-static inline void lanes_pack(int32_t *keys, float *values, lanes_int key, lanes value,
-                              lanes_mask mask)
+/* The numbers of the lanes where a mask is set, in their order; whatever behind them. */
+typedef __m256i lanes_order;
+static inline lanes_order lanes_order_of(lanes_mask mask)
 {
     const uint64_t *order = &lanes_orders[_mm256_movemask_ps((__m256)mask)];
-    __m256i from = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)order));
-    _mm256_storeu_si256((__m256i *)(void *)keys, _mm256_permutevar8x32_epi32((__m256i)key, from));
-    _mm256_storeu_ps(values, _mm256_permutevar8x32_ps((__m256)value, from));
+    return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)order));
+}
+static inline lanes lanes_squeeze(lanes a, lanes_order order)
+{
+    return (lanes)_mm256_permutevar8x32_ps((__m256)a, order);
+}
+static inline lanes_int lanes_int_squeeze(lanes_int a, lanes_order order)
+{
+    return (lanes_int)_mm256_permutevar8x32_epi32((__m256i)a, order);
 }
 
-/* Adds to the rays that the keys' lowest 4 bits name, one after the other. */
+/* Adds to the pixels that the keys name, one after the other. */
 static inline void lanes_scatter(float (*to)[4], const int32_t *keys, const lanes rgb[3])
 {
     __m256 zero = _mm256_setzero_ps(), mixed[4];
@@ -141,7 +130,7 @@ static inline void lanes_scatter(float (*to)[4], const int32_t *keys, const lane
     for (int i = 0; i < LANES; i++) {
         __m128 add =
             i < 4 ? _mm256_castps256_ps128(pairs[i]) : _mm256_extractf128_ps(pairs[i - 4], 1);
-        float *ray = to[keys[i] & 15];
+        float *ray = to[keys[i]];
         _mm_storeu_ps(ray, _mm_add_ps(_mm_loadu_ps(ray), add));
     }
 }

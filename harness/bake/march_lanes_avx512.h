@@ -19,6 +19,10 @@ static inline lanes_mask lanes_int_less(lanes_int a, lanes_int b)
 {
     return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
 }
+static inline lanes_mask lanes_int_same(lanes_int a, lanes_int b)
+{
+    return _mm512_cmpeq_epi32_mask((__m512i)a, (__m512i)b);
+}
 static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 {
     return (lanes_mask)(a & b);
@@ -66,43 +70,40 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (const int *)words, 4);
 }
 
-/* Two words from each place, whatever where the mask is not set. */
-static inline void lanes_gather_two(const uint32_t *words, lanes_int at, lanes_mask mask,
-                                    lanes_int got[2])
-{
-    for (int k = 0; k < 2; k++)
-        got[k] = lanes_gather(words + k, at, mask);
-}
-
-/* Four words from each place, whatever where the mask is not set. */
-static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_mask mask,
-                                     lanes_int got[4])
+/* Four words from each place. */
+static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_int got[4])
 {
     for (int k = 0; k < 4; k++)
-        got[k] = lanes_gather(words + k, at, mask);
+        got[k] = (lanes_int)_mm512_i32gather_epi32((__m512i)at, (const int *)(words + k), 4);
 }
 
 /* The byte at a place and the next in bits 0 to 15, whatever above them. Reads four bytes. */
-static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, lanes_mask mask)
+static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at)
 {
-    return (lanes_int)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, (__m512i)at,
-                                                  (const void *)bytes, 1);
+    return (lanes_int)_mm512_i32gather_epi32((__m512i)at, (const void *)bytes, 1);
 }
 
-/* Where the mask is set, in their order; what follows them may be overwritten, LANES in all. */
-static inline void lanes_pack(int32_t *keys, float *values, lanes_int key, lanes value,
-                              lanes_mask mask)
+/* The lanes where a mask is set, in their order; whatever behind them. */
+typedef __mmask16 lanes_order;
+static inline lanes_order lanes_order_of(lanes_mask mask)
 {
-    _mm512_mask_compressstoreu_epi32(keys, mask, (__m512i)key);
-    _mm512_mask_compressstoreu_ps(values, mask, (__m512)value);
+    return mask;
+}
+static inline lanes lanes_squeeze(lanes a, lanes_order order)
+{
+    return (lanes)_mm512_maskz_compress_ps(order, (__m512)a);
+}
+static inline lanes_int lanes_int_squeeze(lanes_int a, lanes_order order)
+{
+    return (lanes_int)_mm512_maskz_compress_epi32(order, (__m512i)a);
 }
 
-/* Adds to the rays that the keys' lowest 4 bits name, one after the other. */
+/* Adds to the pixels that the keys name, one after the other. */
 static inline void lanes_scatter(float (*to)[4], const int32_t *keys, const lanes rgb[3])
 {
     for (int i = 0; i < LANES; i++)
         for (int c = 0; c < 3; c++)
-            to[keys[i] & 15][c] += rgb[c][i];
+            to[keys[i]][c] += rgb[c][i];
 }
 
 #endif

@@ -19,6 +19,10 @@ static inline lanes_mask lanes_int_less(lanes_int a, lanes_int b)
 {
     return (lanes_mask)(a < b);
 }
+static inline lanes_mask lanes_int_same(lanes_int a, lanes_int b)
+{
+    return (lanes_mask)(a == b);
+}
 static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 {
     return a & b;
@@ -71,48 +75,55 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
     return got;
 }
 
-/* Two words from each place, whatever where the mask is not set. */
-static inline void lanes_gather_two(const uint32_t *words, lanes_int at, lanes_mask mask,
-                                    lanes_int got[2])
+/* Four words from each place. */
+static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_int got[4])
 {
-    for (int k = 0; k < 2; k++)
-        got[k] = lanes_gather(words + k, at, mask);
+    for (int i = 0; i < LANES; i++)
+        for (int k = 0; k < 4; k++)
+            got[k][i] = (int32_t)words[at[i] + k];
 }
 
-/* Four words from each place, whatever where the mask is not set. */
-static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_mask mask,
-                                     lanes_int got[4])
-{
-    for (int k = 0; k < 4; k++)
-        got[k] = lanes_gather(words + k, at, mask);
-}
-
-/* The byte at a place and the next in bits 0 to 15, 0 where the mask is not set. */
-static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at, lanes_mask mask)
+/* The byte at a place and the next in bits 0 to 15. */
+static inline lanes_int lanes_gather_pair(const uint8_t *bytes, lanes_int at)
 {
     lanes_int got;
     for (int i = 0; i < LANES; i++)
-        got[i] = mask[i] ? bytes[at[i]] | bytes[at[i] + 1] << 8 : 0;
+        got[i] = bytes[at[i]] | bytes[at[i] + 1] << 8;
     return got;
 }
 
-/* Where the mask is set, in their order; what follows them may be overwritten, LANES in all. */
-static inline void lanes_pack(int32_t *keys, float *values, lanes_int key, lanes value,
-                              lanes_mask mask)
+/* The numbers of the lanes where a mask is set, in their order; whatever behind them. */
+typedef lanes_int lanes_order;
+static inline lanes_order lanes_order_of(lanes_mask mask)
 {
-    for (int i = 0, count = 0; i < LANES; i++) {
-        keys[count] = key[i];
-        values[count] = value[i];
+    lanes_order order = {0};
+    for (int i = 0, count = 0; i < LANES && count < LANES; i++) {
+        order[count] = i;
         count -= mask[i];
     }
+    return order;
+}
+static inline lanes lanes_squeeze(lanes a, lanes_order order)
+{
+    lanes squeezed;
+    for (int i = 0; i < LANES; i++)
+        squeezed[i] = a[order[i]];
+    return squeezed;
+}
+static inline lanes_int lanes_int_squeeze(lanes_int a, lanes_order order)
+{
+    lanes_int squeezed;
+    for (int i = 0; i < LANES; i++)
+        squeezed[i] = a[order[i]];
+    return squeezed;
 }
 
-/* Adds to the rays that the keys' lowest 4 bits name, one after the other. */
+/* Adds to the pixels that the keys name, one after the other. */
 static inline void lanes_scatter(float (*to)[4], const int32_t *keys, const lanes rgb[3])
 {
     for (int i = 0; i < LANES; i++)
         for (int c = 0; c < 3; c++)
-            to[keys[i] & 15][c] += rgb[c][i];
+            to[keys[i]][c] += rgb[c][i];
 }
 
 #endif

@@ -1,18 +1,25 @@
-/* What the ray march's kernels are given: 4 x 4 rays and a tree. */
+/* What the ray march's kernels are given: a rectangle of rays and a tree. */
 #ifndef TREELINE_BAKE_MARCH_PARTS_H
 #define TREELINE_BAKE_MARCH_PARTS_H
 
 #include "bake/voxels.h"
 
-enum { MARCH_BLOCK = 4, MARCH_RAYS = MARCH_BLOCK * MARCH_BLOCK };
-
-/* Front to back: what has been gathered, and how much is still seen behind it. */
+/* Rays, row by row. Front to back: what has been gathered, and how much is still seen behind it. A
+ * kernel reads up to MARCH_ROOM floats of left and depths_m past the last row's end. */
+enum { MARCH_ROOM = 16 };
 struct march_rays {
-    float left[MARCH_RAYS];     /* transmittance */
-    float rgb[MARCH_RAYS][4];   /* the fourth stays 0 */
-    float depths_m[MARCH_RAYS]; /* of what is behind the trees, along the view */
-    uint64_t lookups;           /* a cell is one, a voxel two, its shadow three, for each ray */
-} __attribute__((aligned(64)));
+    int stride;            /* rays from row to row, 4096 in all at most */
+    float *left;           /* transmittance */
+    float (*rgb)[4];       /* the fourth stays */
+    const float *depths_m; /* of what is behind the trees, along the view */
+    uint64_t lookups;      /* a cell is one, a voxel two, its shadow three, for each ray; also those
+                              that a ray asks for before it is known that nothing is seen through it */
+};
+
+/* Columns and rows, both ends included. */
+struct march_rect {
+    int low[2], high[2];
+};
 
 /* x' M y of a packed matrix: factors[0] + sum of its five entries of 6 bits, each by its factor. */
 struct march_form {
@@ -29,13 +36,14 @@ struct march_sun {
     int32_t size[3], side;
 };
 
-/* A tree at one of its levels, seen through a block of pixels. Lengths in the level's voxels. */
+/* A tree at one of its levels, seen through rays. Lengths in the level's voxels. */
 struct march_job {
     const uint32_t *cells;
     const uint32_t *voxels; /* four words each */
     int32_t size[3];
     float eye[3];
-    float first[3], right[3], down[3]; /* rays, a metre along the view */
+    float first[3], right[3], down[3]; /* rays, a metre along the view: column 0, row 0; from each
+                                          to the next */
     float speed;                       /* length of a ray a metre along the view */
     float near_m, far_m, step, stop;
     float thinned;                     /* share of all density that is left out */
@@ -53,17 +61,19 @@ struct march_job {
     float clear, fog[3]; /* the share that fog leaves; what it adds */
 };
 
-/* Marches a block's rays through a tree. False when nothing more can be seen through the block. */
-typedef bool march_block(const struct march_job *job, struct march_rays *rays);
+/* Marches a rectangle's open rays, those of left > stop, through a tree. Returns how many of them
+ * that closed. */
+typedef int march_kernel(const struct march_job *job, const struct march_rect *rect,
+                         struct march_rays *rays);
 
 /* The kernels of this build, from the slowest to the fastest that this processor runs; the first is
  * plain C. Same picture, to the bit. */
 struct march_isa {
     const char *name;
-    march_block *block;
+    march_kernel *kernel;
 };
 size_t march_isas(struct march_isa isas[4]);
 
-march_block march_block_plain, march_block_avx2, march_block_avx512;
+march_kernel march_kernel_plain, march_kernel_avx2, march_kernel_avx512;
 
 #endif

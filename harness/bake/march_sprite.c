@@ -51,17 +51,16 @@ static void edge_sums(const struct march_sprite *sprite, const struct cut *acros
     }
 }
 
-/* Over what is seen through a pixel. color: radiance times cover, cover; of it, a share. */
-static void pixel_over(struct canvas *canvas, int x, int y, four color, float share)
+/* Over what is seen through a pixel, its number in the tile. color: radiance times cover, cover; of
+ * it, a share. */
+static void pixel_over(struct canvas *canvas, int at, four color, float share)
 {
-    struct march_rays *rays = &canvas->blocks[y / MARCH_BLOCK * canvas->across + x / MARCH_BLOCK];
-    int lane = y % MARCH_BLOCK * MARCH_BLOCK + x % MARCH_BLOCK;
-    float left = rays->left[lane], scale = color[3] > 1 ? left / color[3] : left;
+    float left = canvas->left[at], scale = color[3] > 1 ? left / color[3] : left;
     if (share < 1)
         scale = left * share_hides(color[3], share) / color[3];
-    rays->left[lane] = left - scale * color[3];
+    canvas_over(canvas, at, scale * color[3]);
     for (int c = 0; c < 3; c++)
-        rays->rgb[lane][c] += scale * color[c];
+        canvas->gathered[at][c] += scale * color[c];
 }
 
 /* What turns a texel into radiance and cover: own factors, and the fog's by its cover. */
@@ -106,11 +105,10 @@ void canvas_sprite(struct canvas *canvas, const struct march_view *picture,
         edge_sums(sprite, &across, down.texels[row + 1], down.beyond[row + 1], sums[~row & 1]);
         for (int column = 0; column < across.count; column++) {
             four texels = below[column + 1] - below[column] - above[column + 1] + above[column];
-            int x = across.first + column, y = down.first + row;
-            if (texels[3] > 0 &&
-                !canvas_hides(&splat, &picture->rays, (float)(tile->x_px + x),
-                              (float)(tile->y_px + y), canvas->depths_m[y * tile->stride + x]))
-                pixel_over(canvas, x, y, shine.own * texels + shine.fog * texels[3], share);
+            int x = across.first + column, y = down.first + row, at = y * tile->stride + x;
+            if (texels[3] > 0 && !canvas_hides(&splat, &picture->rays, (float)(tile->x_px + x),
+                                               (float)(tile->y_px + y), canvas->depths_m[at]))
+                pixel_over(canvas, at, shine.own * texels + shine.fog * texels[3], share);
         }
     }
 }
