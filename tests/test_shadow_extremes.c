@@ -12,7 +12,7 @@ enum { VIEWS = 3 };
 static void masks_of(const char *method, struct mask_error masks[VIEWS])
 {
     struct arena *arena = arena_create(0);
-    const char *cell = arena_printf(arena, "stones-day/%s/trees=12/size=48x36", method);
+    const char *cell = arena_printf(arena, "stones-day/%s/trees=12/size=40x30", method);
     struct plan *plan = NULL;
     struct error error = {0};
     struct plan_request request = {.cells = &cell,
@@ -39,16 +39,13 @@ static void masks_of(const char *method, struct mask_error masks[VIEWS])
     arena_destroy(arena);
 }
 
+/* The relief's volumes are counted behind samples, the stones' before them. */
 static void test_shadow__volumes_are_right_from_sunrise_to_noon(void **unused)
 {
-    static const char *const methods[] = {"shadow-volume:samples=4",
-                                          "shadow-volume:samples=4,test=z-fail"};
     struct mask_error masks[VIEWS];
-    for (size_t m = 0; m < 2; m++) {
-        masks_of(methods[m], masks);
-        for (int v = 0; v < VIEWS; v++)
-            assert_true(masks[v].stray < 0.002 && masks[v].judged > 0.98);
-    }
+    masks_of("shadow-volume:samples=4", masks);
+    for (int v = 0; v < VIEWS; v++)
+        assert_true(masks[v].stray < 0.002 && masks[v].judged > 0.98);
     (void)unused;
 }
 
@@ -57,7 +54,7 @@ static void test_shadow__maps_of_16_bits_with_planes_a_million_apart_lose_little
     struct mask_error masks[VIEWS];
     masks_of("shadow-map:depth=16,cascades=4,split=1", masks);
     for (int v = 0; v < VIEWS; v++)
-        assert_true(masks[v].wrong < 0.2 && masks[v].judged > 0.98);
+        assert_true(masks[v].wrong < 0.08 && masks[v].judged > 0.98);
     (void)unused;
 }
 
