@@ -10,7 +10,7 @@
 struct options {
     int directions, above, slices, resolution, order, cut, samples;
     float criterion, texel, error_px, near;
-    bool oblique;
+    bool oblique, smooth;
 };
 
 /* clang-format off */
@@ -36,6 +36,7 @@ static const struct option table[] = {
            "trees nearer to the eye are drawn by their triangles; 0: none"),
     OPTION(struct options, oblique, 1, 0, 1, "",
            "slices seen at a slant hide as much as the longer way through them"),
+    OPTION(struct options, smooth, 0, 0, 1, "", "trees turn into their triangles gradually"),
     OPTION_END,
 };
 /* clang-format on */
@@ -118,6 +119,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .facing = true,
         .oblique = options->oblique,
         .near_radii = options->near,
+        .near_octaves = options->smooth ? STACK_NEAR_OCTAVES : 0,
         .mix = options->order ? STACK_CROSSED : STACK_MIXED,
         .above = options->above,
         .criterion_px = options->criterion,

@@ -108,7 +108,7 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     if (status == STATUS_OK)
         status = atlas_build(workspace, scene, &atlas, &impostor->atlas);
     if (status == STATUS_OK)
-        status = nearby_prepare(workspace, scene, request->near_radii,
+        status = nearby_prepare(workspace, scene, request->near_radii, 0,
                                 sun_shadows_map(impostor->shadows), &impostor->nearby);
     if (status != STATUS_OK)
         return status;

@@ -19,18 +19,25 @@ struct nearby;
 struct shadow_map;
 
 /* radii: a tree is near when the eye is closer to its axis than so many of its radii, and no
- * farther above or below it than what that is more than one; 0: none ever is. The triangles are
- * uploaded here when the camera's path comes so near, else by the first picture that needs them.
- * shadows: received; NULL: none. */
+ * farther above or below it than what that is more than one; 0: none ever is. octaves: of that
+ * distance, over which it becomes near gradually; 0: at once. The triangles are uploaded here when
+ * the camera's path comes so near, else by the first picture that needs them. shadows: received;
+ * NULL: none. */
 enum status nearby_prepare(struct workspace *workspace, const struct scene *scene, float radii,
-                           const struct shadow_map *shadows, struct nearby **nearby);
+                           float octaves, const struct shadow_map *shadows,
+                           struct nearby **nearby);
 
-/* Takes the near trees out of a list that is sorted by depth. */
+/* Takes the near trees out of a list that is sorted by depth; those that are not near altogether
+ * stay in it, too. */
 void nearby_take(struct nearby *nearby, const struct view *view, enum cull_order order,
                  struct cull_list *list);
 
-/* Draws what was taken, depth tested and without blending, into what is bound, of so many
- * samples a texel. Nothing where none was near. */
+/* The share of a tree that nearby_draw shows, of nearby_take's view; 0..1. */
+float nearby_share(const struct nearby *nearby, uint32_t instance);
+
+/* Draws what was taken, depth tested, into what is bound, of so many samples a texel: near trees
+ * without blending, then, over what is there, each of those that become near by its share. Nothing
+ * where there is none. */
 enum status nearby_draw(struct workspace *workspace, struct nearby *nearby, const struct view *view,
                         int samples, struct cull *cull);
 

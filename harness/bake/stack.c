@@ -63,6 +63,7 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
         status = stack_program(workspace, stack);
     if (status == STATUS_OK)
         status = nearby_prepare(workspace, scene, request->near_radii,
+                                request->groups > 0 ? 0 : request->near_octaves,
                                 sun_shadows_map(stack->shadows), &stack->nearby);
     if (status == STATUS_OK && request->distant_px > 0 && !stack->shadows &&
         workspace->lod == LOD_AUTO && request->ground == GROUND_UPRIGHT &&
@@ -146,7 +147,8 @@ static struct fill fill_behind(const struct stack *stack, const struct view *vie
     struct stack_part parts[PARTS_MOST];
     int count = stack_parts(stack, view, lod, instance, parts);
     const size_t number = (size_t)(instance - stack->scene->instances);
-    const float near = stack->distant ? 1 - distant_share(stack->distant, number) : 1;
+    const float near = (stack->distant ? 1 - distant_share(stack->distant, number) : 1) *
+                       (1 - nearby_share(stack->nearby, (uint32_t)number));
     for (int k = 0; k < count; k++) {
         struct stack_tree *tree = &stack->trees[fill.parts + (size_t)k];
         stack_tree_fill(stack, view, instance, &parts[k], tree);

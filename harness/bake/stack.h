@@ -38,6 +38,7 @@ struct stack_request {
     bool trilinear;             /* else the nearest mip level, chosen a tree */
     bool rectangles;            /* quads hold only the occupied rectangle of a slice */
     float near_radii;           /* nearer trees are drawn by their triangles; 0: none */
+    float near_octaves;         /* over which they become so, with groups = 0; 0: at once */
     bool each;                  /* one draw a tree */
     int groups; /* of trees, front to back, saturated pixels closed after each; 0: back to front */
     int turns;  /* light is baked into the colours for trees turned by so many steps, and for every
@@ -59,6 +60,9 @@ struct stack_request {
     bool above; /* mixed, crossed: the last direction is +y, its stack's share of a tree grows from
                    an elevation of the eye of 30 degrees to 1 at 90 */
 };
+
+/* Of the distance, over which slices turn into triangles where that is gradual. */
+#define STACK_NEAR_OCTAVES 0.5f
 
 /* Steps of a tree's stretch that light is baked for, as those of turns: a quarter of an octave,
  * from 1/8 to 8. */

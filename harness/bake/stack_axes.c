@@ -16,6 +16,7 @@ struct stack_request stack_axes_request(const struct stack_axes *axes)
         .trilinear = !fast || axes->filter == 0,
         .rectangles = fast,
         .near_radii = fast ? axes->near : 0,
+        .near_octaves = axes->smooth ? STACK_NEAR_OCTAVES : 0,
         .each = !fast,
         .oblique = fast && axes->oblique,
         .interpolate = axes->interpolate,

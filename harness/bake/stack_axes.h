@@ -39,7 +39,8 @@ enum stack_path { STACK_NAIVE, STACK_FAST };
     OPTION_IN(type, axes, interpolate, 0, 0, 1, "",                                                \
         "up to four times the slices, by interpolation, where the criterion asks for more"),       \
     OPTION_IN(type, axes, smooth, 0, 0, 1, "",                                                     \
-        "numbers of slices and directions change gradually, and trees become distant so"),         \
+        "numbers of slices and directions change gradually, and trees become distant, or near, so; " \
+        "with front, near at once"),                                                               \
     SHADOW_CHOICE_OPTIONS(type, axes.sun)
 /* clang-format on */
 
