@@ -146,7 +146,6 @@ const struct method billboards_method = {
     .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG | TRAIT_MASK,
     .options = table,
     .options_size = sizeof(struct options),
-    .supported = method_needs_no_stretch,
     .effects = effects,
     .prepare = prepare,
     .draw = draw,

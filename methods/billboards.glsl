@@ -3,7 +3,7 @@
 void main()
 {
     int number = int(order[first_tree + gl_VertexID / CORNERS]), corner = gl_VertexID % CORNERS;
-    tree t = trees[number];
+    tree t = tree_at(number);
     plant p = plants[int(t.turn.z)];
     vec3 v = to_tree(eye_m - center_of(t, p), t);
     if (LAYOUT == 0 || (LAYOUT == 1 && v.y < 0.0))

@@ -130,7 +130,6 @@ const struct method cross_quads_method = {
     .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG | TRAIT_MASK,
     .options = table,
     .options_size = sizeof(struct options),
-    .supported = method_needs_no_stretch,
     .effects = effects,
     .prepare = prepare,
     .draw = draw,

@@ -29,7 +29,7 @@ void main()
     int quads = HALVES == 1 ? 2 * planes : planes;
     int fan = gl_VertexID / CORNERS, corner = gl_VertexID % CORNERS;
     int number = int(order[first_tree + fan / quads]);
-    tree t = trees[number];
+    tree t = tree_at(number);
     plant p = plants[int(t.turn.z)];
     vec3 v = to_tree(eye_m - center_of(t, p), t);
     int j = HALVES == 1 ? half_plane(v, fan % quads) : whole_plane(v, fan % quads);

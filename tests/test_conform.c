@@ -104,12 +104,14 @@ static void test_conform__a_plugin_that_keeps_the_contract_passes(void **unused)
     arena_destroy(arena);
 }
 
-static void test_conform__methods_of_slices_honour_a_trees_stretch(void **unused)
+static void test_conform__methods_of_pictures_honour_a_trees_stretch(void **unused)
 {
     (void)unused;
     static const struct checks stretch = {"^stretch$", 1};
     all_pass("texels", stretch);
     all_pass("jakulin", stretch);
+    all_pass("billboards", stretch);
+    all_pass("cross-quads", stretch);
 }
 
 static void test_conform__each_way_to_misbehave_is_told_apart(void **unused)
@@ -274,7 +276,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_conform__the_registered_methods_keep_the_contract),
         cmocka_unit_test(test_conform__a_plugin_that_keeps_the_contract_passes),
-        cmocka_unit_test(test_conform__methods_of_slices_honour_a_trees_stretch),
+        cmocka_unit_test(test_conform__methods_of_pictures_honour_a_trees_stretch),
         cmocka_unit_test(test_conform__each_way_to_misbehave_is_told_apart),
         cmocka_unit_test(test_conform__every_check_of_pictures_can_fail),
         cmocka_unit_test(test_conform__each_lie_about_a_tally_is_told_apart),

@@ -142,6 +142,7 @@ static const struct {
     {"texels", "slices=64,samples=2,criterion=none,turns=9", 0.05},
     {"ray-texels", "resolution=64", 0.06},
     {"ray-texels-gl", "resolution=64,step=0.5", 0.06},
+    {"billboards", "layout=hemisphere,views=256,alpha=blend,resolution=128,near=0", 0.08},
 };
 
 static void test_methods__a_stretched_ball_is_lit_as_its_ellipsoid(void **state)
@@ -160,6 +161,31 @@ static void test_methods__a_stretched_ball_is_lit_as_its_ellipsoid(void **state)
             claim_ellipsoid(drawn[m].method, &view, stretches[k], picture.rgba, drawn[m].most);
             arena_destroy(arena);
         }
+}
+
+/* Pictures are of plants in steps of a quarter of an octave; trees are between them. */
+static void test_billboards__a_stretched_tree_covers_the_references_pixels(void **state)
+{
+    (void)state;
+    static const float between[] = {1.09f, 2.18f, 0.46f};
+    static const char options[] = "layout=hemisphere,views=400,alpha=blend,resolution=128,near=0";
+    for (int k = 0; k < 3; k++) {
+        struct arena *arena = arena_create(0);
+        struct plant *plant = plant_from_mesh(arena, "lopsided", tree_mesh(arena, 400));
+        struct scene *scene = tree_scene(arena, plant, 1, 1);
+        scene->instances[0].stretch = between[k];
+        scene->instances[0].position_m[1] = 3.5f * (1 - between[k]); /* its middle stays */
+        struct view view = tree_view(scene, 0.4f, 0.3f, 300, 9 * fmaxf(1, between[k]));
+        struct frame *truth = tree_reference(arena, scene, EFFECT_TWO_SIDED, &view);
+        struct frame *shown = tree_draw(arena, tree_method("billboards"), options, scene,
+                                        EFFECT_TWO_SIDED, &view, NULL);
+        double covered = tree_mean(truth, 3), ratio = tree_mean(shown, 3) / covered;
+        double off = tree_difference(shown, truth, false) / covered;
+        if (!(fabs(ratio - 1) < 0.03 && off < 0.33))
+            fail_msg("stretch %g: %.3f of the coverage, off by %.3f", (double)between[k], ratio,
+                     off);
+        arena_destroy(arena);
+    }
 }
 
 /* ---- Their shadows. ---- */
@@ -231,6 +257,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ray_texels__the_shadow_of_a_stretched_tree_is_as_traced),
         cmocka_unit_test(test_reference__a_stretched_ball_is_lit_as_its_ellipsoid),
+        cmocka_unit_test(test_billboards__a_stretched_tree_covers_the_references_pixels),
         cmocka_unit_test(test_methods__a_stretched_ball_is_lit_as_its_ellipsoid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 /* Impostors: trees and order on the GL, programs, the state of blending, test and coverage. */
 #include "bake/impostor.h"
 
+#include "bake/impostor_tall.h"
 #include "bake/tally.h"
 
 #include "impostor.glsl.h"
@@ -18,7 +19,7 @@ struct sunlight {
 };
 
 /* Most trees that are drawn with the polygon of ATLAS_HULL corners at a time. */
-enum { HULLS_MOST = 65536, BUFFERS = 5 };
+enum { HULLS_MOST = 65536, BUFFERS = 6 };
 
 /* A pixel, of ATLAS_COVERAGE. */
 enum { COVERAGE_SAMPLES = 4 };
@@ -49,6 +50,18 @@ GLuint impostor_trees(struct gl *gl, const struct scene *scene)
     }
     GLuint buffer =
         gl_buffer(gl, (GLsizeiptr)((scene->instances_count + 1) * sizeof *trees), trees, 0);
+    arena_destroy(scratch);
+    return buffer;
+}
+
+static GLuint upload_stretches(struct gl *gl, const struct scene *scene)
+{
+    struct arena *scratch = arena_create(0);
+    float *stretches = ARENA_ARRAY(scratch, float, scene->instances_count + 1);
+    for (size_t i = 0; i < scene->instances_count; i++)
+        stretches[i] = scene->instances[i].stretch;
+    GLuint buffer =
+        gl_buffer(gl, (GLsizeiptr)((scene->instances_count + 1) * sizeof *stretches), stretches, 0);
     arena_destroy(scratch);
     return buffer;
 }
@@ -106,24 +119,29 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     impostor->texels = (uint64_t)(request->mixed ? request->mixed : 1) * (atlas.depth ? 3 : 2) +
                        sun_shadows_samples(impostor->shadows);
     if (status == STATUS_OK)
-        status = atlas_build(workspace, scene, &atlas, &impostor->atlas);
+        status = impostor_tall(workspace, scene, &impostor->tall);
+    const struct scene *tall = impostor->tall;
+    if (status == STATUS_OK)
+        status = atlas_build(workspace, tall, &atlas, &impostor->atlas);
     if (status == STATUS_OK)
         status = nearby_prepare(workspace, scene, request->near_radii, 0,
                                 sun_shadows_map(impostor->shadows), &impostor->nearby);
     if (status != STATUS_OK)
         return status;
     struct cull_bound *bounds =
-        ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count + 1);
-    for (size_t i = 0; i < scene->species_count; i++) {
+        ARENA_ARRAY(workspace->arena, struct cull_bound, tall->species_count + 1);
+    for (size_t i = 0; i < tall->species_count; i++) {
         bounds[i].center_y_m = impostor->atlas->species[i].center_y_m;
         bounds[i].radius_m = impostor->atlas->species[i].radius_m;
     }
     size_t count = scene->instances_count;
-    impostor->cull = cull_create(workspace->arena, scene, bounds);
-    impostor->area_m2 = mean_area(scene, impostor->atlas);
+    impostor->cull = cull_create(workspace->arena, tall, bounds);
+    impostor->area_m2 = mean_area(tall, impostor->atlas);
     impostor->fans_quad = count * request->quads_each;
     impostor->fans_hull = impostor->fans_quad < HULLS_MOST ? impostor->fans_quad : HULLS_MOST;
-    impostor->instances_buffer = impostor_trees(gl, scene);
+    impostor->instances_buffer = impostor_trees(gl, tall);
+    if (tall != scene)
+        impostor->stretches_buffer = upload_stretches(gl, tall);
     impostor->order_buffer =
         gl_buffer(gl, (GLsizeiptr)((count + 1) * sizeof(uint32_t)), NULL, GL_DYNAMIC_STORAGE_BIT);
     size_t lights = (size_t)impostor->atlas->layers * IMPOSTOR_SUN_STEPS;
@@ -169,11 +187,12 @@ enum status impostor_program(struct workspace *workspace, const struct impostor 
     const char *text = impostor_source(scratch, source);
     static const char *const modes[] = {"", "STRAIGHT 1\nALPHA_TEST 1\n",
                                         "STRAIGHT 1\nALPHA_COVERAGE 1\n"};
-    const char *all = arena_printf(scratch, "SUN_STEPS %d\nNEAREST %d\n%s%s%s%s%s",
-                                   IMPOSTOR_SUN_STEPS, impostor->nearest, defines ? defines : "",
-                                   modes[impostor->alpha], impostor->deep ? "DEPTH 1\n" : "",
-                                   impostor->atlas->depth ? "PICTURE_DEPTH 1\n" : "",
-                                   workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
+    const char *all = arena_printf(
+        scratch, "SUN_STEPS %d\nNEAREST %d\n%s%s%s%s%s%s", IMPOSTOR_SUN_STEPS, impostor->nearest,
+        impostor->stretches_buffer ? "STRETCHED 1\n" : "", defines ? defines : "",
+        modes[impostor->alpha], impostor->deep ? "DEPTH 1\n" : "",
+        impostor->atlas->depth ? "PICTURE_DEPTH 1\n" : "",
+        workspace->effects & EFFECT_FOG ? "FOG 1\n" : "");
     enum status status = shadow_receiver_program(workspace, shadows, name, text, all, program);
     arena_destroy(scratch);
     return status;
@@ -284,8 +303,8 @@ void impostor_use(struct workspace *workspace, const struct impostor *impostor, 
     struct gl *gl = workspace->gl;
     const struct atlas *atlas = impostor->atlas;
     const GLuint buffers[BUFFERS] = {impostor->instances_buffer, impostor->order_buffer,
-                                     atlas->views_buffer, atlas->species_buffer,
-                                     impostor->sunlights_buffer};
+                                     atlas->views_buffer,        atlas->species_buffer,
+                                     impostor->sunlights_buffer, impostor->stretches_buffer};
     gl->UseProgram(program);
     gl->BindVertexArray(impostor->vertices);
     for (GLuint i = 0; i < BUFFERS; i++)

@@ -34,6 +34,9 @@ layout(std430, binding = 1) readonly buffer order_buffer { uint order[]; };
 layout(std430, binding = 2) readonly buffer pictures_buffer { picture pictures[]; };
 layout(std430, binding = 3) readonly buffer plants_buffer { plant plants[]; };
 layout(std430, binding = 4) readonly buffer sunlights_buffer { sunlight sunlights[]; };
+#ifdef STRETCHED
+layout(std430, binding = 5) readonly buffer stretches_buffer { float stretches[]; };
+#endif
 
 uniform int first_tree;
 uniform vec2 layer_px;    // size of a layer
@@ -56,14 +59,31 @@ out vec3 plane_m;                   // where the picture's plane is in the world
 flat out vec4 toward_texel;         // unit, that its depths are along; a texel's size, m
 #endif
 
+#ifdef STRETCHED
+float stretch = 1.0;  // of the tree that was asked for last
+#else
+const float stretch = 1.0;
+#endif
+
+tree tree_at(int number)
+{
+#ifdef STRETCHED
+    stretch = stretches[number];
+#endif
+    return trees[number];
+}
+
+// A way of the world in the axes and the height of the tree's plant: pictures stretch with the tree, so that one of them
+// is seen along the way that it is a picture from.
 vec3 to_tree(vec3 v, tree t)
 {
-    return rotate_y(v, t.turn.x, -t.turn.y);
+    vec3 own = rotate_y(v, t.turn.x, -t.turn.y);
+    return vec3(own.x, own.y / stretch, own.z);
 }
 
 vec3 center_of(tree t, plant p)
 {
-    return t.place.xyz + vec3(0.0, p.shape.x * t.place.w, 0.0);
+    return t.place.xyz + vec3(0.0, p.shape.x * t.place.w * stretch, 0.0);
 }
 
 // The level whose texels are as large as pixels at the tree's centre.
@@ -173,6 +193,7 @@ void set_picture(int k, tree t, plant p, int index, vec2 st, float weight, float
 // picture's depths are along toward.
 void set_corner(tree t, plant p, vec3 own, vec3 toward, float depth_m, float level, uint number)
 {
+    own.y *= stretch;
     vec3 world = center_of(t, p) + t.place.w * rotate_y(own, t.turn.x, t.turn.y);
     float away = max(distance(world, eye_m), 1e-6);
     float share = clamp(depth_m * t.place.w / away, -1.0, 0.9);

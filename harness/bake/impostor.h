@@ -25,6 +25,7 @@ enum { IMPOSTOR_SUN_STEPS = 256 };
 
 struct impostor {
     const struct scene *scene;
+    const struct scene *tall; /* the same trees, of species as high as they are: impostor_tall.h */
     struct atlas *atlas;
     struct cull *cull;
     struct backdrop *backdrop;
@@ -36,6 +37,7 @@ struct impostor {
     uint64_t texels; /* that a fragment takes */
     GLuint vertices; /* no attributes; the index buffer of fans */
     GLuint instances_buffer, order_buffer;
+    GLuint stretches_buffer; /* what is left of each tree's stretch; 0: no tree is stretched */
     GLuint sunlights_buffer; /* pictures x IMPOSTOR_SUN_STEPS: what the sun makes of the channels */
     float sun_direction[3];  /* that sunlights_buffer holds; zeros: none yet */
     size_t fans_quad,
