@@ -280,7 +280,8 @@ static double share_of_back(struct fixture *f, const char *options, double *thro
 
 /* Of a crown that lets T through, each half of it the root: of the back T^1/2 (1 - T^1/2) is seen
  * past the front. One stack drawn over the other, of half its depth each, and of that half a
- * half before the other: with t = T^1/4 it is t (1 - t) (1 + t^2). */
+ * half before the other: with t = T^1/4 it is t (1 - t) (1 + t^2), three times as much. Leaves that
+ * stand in clumps of a texel let more through in some places than in others. */
 static void test_jakulin__only_in_exact_order_the_front_hides_the_back(void **state)
 {
     struct fixture *f = *state;
@@ -292,7 +293,7 @@ static void test_jakulin__only_in_exact_order_the_front_hides_the_back(void **st
                                   &through);
         double t = pow(through, 0.25);
         double wanted = (exact ? t * t * (1 - t * t) : t * (1 - t) * (1 + t * t)) / (1 - through);
-        if (fabs(shown / wanted - 1) > 0.15 || through > 0.1)
+        if (fabs(shown / wanted - 1) > 0.3 || through > 0.1)
             fail_msg("exact %d: %.3f of what is seen is the back, not %.3f; %.3f is seen through",
                      exact, shown, wanted, through);
     }

@@ -68,8 +68,7 @@ static bool path_comes_near(const struct nearby *nearby)
 }
 
 enum status nearby_prepare(struct workspace *workspace, const struct scene *scene, float radii,
-                           float octaves, const struct shadow_map *shadows,
-                           struct nearby **result)
+                           float octaves, const struct shadow_map *shadows, struct nearby **result)
 {
     struct nearby *nearby = *result = ARENA_NEW(workspace->arena, struct nearby);
     nearby->scene = scene;

@@ -187,7 +187,7 @@ float facing_of(vec4 n)
 #ifdef OBLIQUE
     float scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0);
     float area = sqrt((turned * turned + scatter * slant.x + 0.01) / (to_front * to_front + 0.01));
-    return mix(slant.y, min(area, 3.0), n.w);
+    return mix(slant.y, min(area, 5.0), n.w);
 #else
     float scatter = max(1.0 - dot(n.xyz, n.xyz), 0.0) / 4.5 + 0.01;
     float area = sqrt((turned * turned + scatter * dot(to_eye, to_eye)) / (to_front * to_front + scatter));
@@ -214,6 +214,11 @@ void main()
 #endif
 #ifdef FACING
     float area = facing_of(normal);
+#ifdef OBLIQUE
+    // A leaf that fills its texel cannot show more than all, and if it showed less where it turns away, a crown of such
+    // leaves would be too thin: it stays as it is, and one that fills a part loses less by that.
+    area = max(area, mix(area, 1.0, texel.a * texel.a));
+#endif
     texel *= min(area, 1.0 / max(texel.a, 1e-6));
 #endif
 #if defined(OBLIQUE) && !defined(FACING)
