@@ -111,7 +111,7 @@ static void test_tally__texels_are_those_of_every_fragment_of_a_tree(void **unus
 }
 
 /* Both walk the same cells by the same steps; trees about as small as a pixel have looks of their
- * own in each. */
+ * own in each, and a ray on the CPU goes on for some steps until it is known that it is closed. */
 static void test_tally__a_march_by_opengl_looks_up_what_the_cpu_s_does(void **unused)
 {
     (void)unused;
@@ -123,7 +123,7 @@ static void test_tally__a_march_by_opengl_looks_up_what_the_cpu_s_does(void **un
         struct count cpu = count_draws("ray-texels", options[k], scene, &view);
         struct count gl = count_draws("ray-texels-gl", options[k], scene, &view);
         double ratio = (double)gl.tally.lookups / (double)cpu.tally.lookups;
-        if (!(fabs(ratio - 1) < 0.01))
+        if (!(ratio > 0.98 && ratio < 1.01))
             fail_msg("%s: %llu lookups by OpenGL, %llu by the CPU", options[k],
                      (unsigned long long)gl.tally.lookups, (unsigned long long)cpu.tally.lookups);
         assert_true(gl.plain.lookups == 0 && cpu.plain.lookups == cpu.tally.lookups);
