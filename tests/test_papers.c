@@ -389,6 +389,22 @@ static void test_papers__a_run_without_a_printed_cell_has_no_section(void **stat
     assert_int_equal(count, 0);
 }
 
+static void test_papers__claims_without_tables_stand_beside_a_run_that_decides_one(void **state)
+{
+    struct arena *arena = *state;
+    struct world world = make_world(arena, ROUNDS);
+    size_t count = 0;
+    world.paper.tables_count = 0;
+    world.beside = papers_beside(world.book, &world.paper, 1, &count);
+    assert_int_equal(count, 1);
+    assert_int_equal(world.beside->blocks_count, 0);
+    assert_true(world.beside->findings_count > 0);
+    for (size_t i = 0; i < world.paper.claims_count; i++)
+        world.paper.claims[i].of.method = "unheard-of";
+    papers_beside(world.book, &world.paper, 1, &count);
+    assert_int_equal(count, 0);
+}
+
 static void test_papers__a_variant_of_one_printed_row_has_no_table(void **state)
 {
     struct arena *arena = *state;
@@ -602,6 +618,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(test_papers__a_variant_of_one_printed_row_has_no_table),
         cmocka_unit_test(test_papers__worst_and_best_are_the_slowest_and_fastest_frames),
         cmocka_unit_test(test_papers__a_law_is_judged_by_its_residuals),
+        cmocka_unit_test(test_papers__claims_without_tables_stand_beside_a_run_that_decides_one),
         cmocka_unit_test(test_papers__bad_files_are_refused_by_one_clear_line),
         cmocka_unit_test(test_papers__files_of_this_project_are_read_and_their_scenes_exist),
         cmocka_unit_test(test_papers__the_foggy_forest_is_the_forest_with_fog),

@@ -217,6 +217,15 @@ static size_t find_blocks(struct bench *bench, const struct paper_table *table,
     return count;
 }
 
+/* A paper without tables stands beside a run that has cells for one of its claims. */
+static bool decides(const struct paper_beside *beside)
+{
+    for (size_t i = 0; i < beside->findings_count; i++)
+        if (beside->findings[i].pairs)
+            return true;
+    return false;
+}
+
 struct paper_beside *papers_beside(const struct book *book, const struct paper *papers,
                                    size_t papers_count, size_t *count)
 {
@@ -231,10 +240,10 @@ struct paper_beside *papers_beside(const struct book *book, const struct paper *
         for (size_t t = 0; t < papers[i].tables_count; t++)
             beside->blocks_count +=
                 find_blocks(&bench, &papers[i].tables[t], beside->blocks + beside->blocks_count);
-        if (!beside->blocks_count)
+        if (!beside->blocks_count && papers[i].tables_count)
             continue;
         beside->findings = paper_judge(book, &papers[i], &beside->findings_count);
-        ++*count;
+        *count += beside->blocks_count || decides(beside);
     }
     return list;
 }
