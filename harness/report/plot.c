@@ -82,7 +82,7 @@ void plot_curve(struct plot *plot)
 }
 
 /* The plotting area of the wide version, about, and of its small letters. */
-static const double area_width_px = 440, area_height_px = 245, letter_px = 5.8, line_px = 12;
+static const double area_width_px = 440, area_height_px = 245, letter_px = 7.4, line_px = 12;
 
 static bool boxes_touch(const struct plot_box *a, const struct plot_box *b)
 {

@@ -239,7 +239,7 @@ enum status plot_masks_distance(const struct book *book, const struct group *gro
     plot_open(&plot, book, folder, arena_printf(book->arena, "masks-distance-%s", group->slug),
               group->title);
     plot_axes(&plot, &x, &y, "median distance to the trees in view [m]",
-              "share of the surface whose shadow is wrong [%]");
+              "surface in wrong shadow [%]");
     fputs("set key maxcols 1\n", plot.gp);
     for (size_t i = 0; i < group->rows_count; i++)
         put_curve(&plot, &book->rows[group->rows[i]]);
