@@ -21,13 +21,29 @@ static void to_plant(const struct instance *instance, const float world[3], floa
     plant[2] = world[0] * s + world[2] * c;
 }
 
-/* How many of count to draw where their area on the screen is so large. */
-static float kept_of(size_t count, float thin, float area_px2, float *grown)
+/* How many of count to draw where their area on the screen is so large. areas: sums of the first so
+ * many. */
+static float kept_of(size_t count, const float *areas, float thin, float area_px2, float *grown)
 {
-    float all = (float)count, kept = thin > 0 ? fmaxf(thin * area_px2, 4) : all;
+    static const float least = CONE_LANES; /* fewer take no less time */
+    float all = (float)count, kept = thin > 0 ? fmaxf(thin * area_px2, least) : all;
     kept = fminf(kept, all);
-    *grown = kept > 0 ? all / kept : 1;
+    *grown = 1;
+    if (!(kept < all))
+        return kept;
+    size_t whole = (size_t)kept;
+    float part = areas[whole] + (kept - (float)whole) * (areas[whole + 1] - areas[whole]);
+    *grown = areas[count] / fmaxf(part, 1e-6f * areas[count]);
     return kept;
+}
+
+/* Pieces of a trunk together are at least a pixel long. */
+static uint32_t trunk_step_of(float piece_px)
+{
+    uint32_t step = 1;
+    while (step < 64 && (float)step * piece_px < 1)
+        step *= 2;
+    return step;
 }
 
 void cone_tree_of(const struct cone_picture *picture, size_t index, struct cone_tree *tree)
@@ -55,10 +71,12 @@ void cone_tree_of(const struct cone_picture *picture, size_t index, struct cone_
     cone_to_camera(tree, tree->plant->center_m, middle_m);
     px /= fmaxf(middle_m[2] - instance->scale * tree->plant->radius_m, view->near_m);
     float area_px2 = px * px * tree->plant->area_m2;
-    tree->twigs =
-        kept_of(tree->plant->twigs_count, picture->choice.thin, area_px2, &tree->twigs_grown);
-    tree->barks = kept_of(tree->plant->barks_count - tree->plant->trunks_count,
-                          picture->choice.thin, area_px2, &tree->barks_grown);
+    tree->twigs = kept_of(tree->plant->twigs_count, tree->plant->twigs_areas, picture->choice.thin,
+                          area_px2, &tree->twigs_grown);
+    tree->barks =
+        kept_of(tree->plant->barks_count - tree->plant->trunks_count, tree->plant->barks_areas,
+                picture->choice.thin, area_px2, &tree->barks_grown);
+    tree->trunk_step = picture->choice.thin > 0 ? trunk_step_of(px * tree->plant->piece_m) : 1;
     tree->barks += (float)tree->plant->trunks_count;
     tree->light.cones = NULL;
     if (picture->lights)
@@ -197,14 +215,21 @@ size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree
                       size_t index, struct cone_strip *strip)
 {
     const struct cone_plant *plant = tree->plant;
-    const struct cone_bark *bark = &plant->barks[index];
+    const struct cone_bark *bark = &plant->barks[index], *last = bark;
     struct cone_rod rod = {.radius_m = {bark->radius_m[0], bark->radius_m[1]}};
     float axis[3], eye[3], middle_m[3], grown = 1;
+    if (index < plant->trunks_count && tree->trunk_step > 1) {
+        if (bark->place % tree->trunk_step)
+            return 0;
+        uint32_t left = bark->pieces - bark->place;
+        last += (left < tree->trunk_step ? left : tree->trunk_step) - 1;
+        rod.radius_m[1] = last->radius_m[1];
+    }
     memcpy(rod.ends_m[0], bark->from_m, sizeof rod.ends_m[0]);
-    memcpy(rod.ends_m[1], bark->to_m, sizeof rod.ends_m[1]);
+    memcpy(rod.ends_m[1], last->to_m, sizeof rod.ends_m[1]);
     for (int i = 0; i < 3; i++) {
-        middle_m[i] = 0.5f * (bark->from_m[i] + bark->to_m[i]);
-        axis[i] = bark->to_m[i] - bark->from_m[i];
+        middle_m[i] = 0.5f * (bark->from_m[i] + last->to_m[i]);
+        axis[i] = last->to_m[i] - bark->from_m[i];
         eye[i] = tree->eye_m[i] - middle_m[i];
     }
     float length = sqrtf(fmaxf(dot3(axis, axis), 1e-30f)), away = sqrtf(dot3(eye, eye));
@@ -224,15 +249,17 @@ size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree
     rod.radius_m[1] *= grown;
     if (!cone_strip_place(picture, tree, &rod, strip))
         return 0;
-    static const float joint_px = 0.5f;
-    if (grown == 1)
+    if (grown == 1) /* half a pixel, and less of what is shorter than a pixel */
         for (int end = 0; end < 2; end++)
-            strip->beyond_px[end] += joint_px;
+            strip->beyond_px[end] += 0.5f * fminf(strip->length_px * strip->length_px, 1);
     const struct cone_material material = {plant->conifer->bark_albedo, 0};
     const struct needles_shade white = {1, 0, 1};
     const struct needles_sight sight = needles_sight_of(tree->sun, eye, -1, false);
     cone_strip_color(picture, &material, &white, strip);
     cone_strip_round(tree, &rod, needles_reflect(axis, &sight).diffuse, strip);
+    strip->opacity =
+        cone_outline_part(&plant->outline, middle_m, fmaxf(rod.radius_m[0], rod.radius_m[1]), eye,
+                          tree->scale * picture->focal_px / strip->depth_m);
     if (tree->light.cones) {
         float gain = cone_tree_light_gain(&tree->light, middle_m);
         strip->lit[0] = strip->lit[1] = gain * (float)tree->light.barks[index] / 255;

@@ -44,6 +44,7 @@ struct cone_tree {
     float scale;
     float twigs, barks;             /* how many of the first ones are drawn, the last one partly */
     float twigs_grown, barks_grown; /* how much more area each then has */
+    uint32_t trunk_step;            /* so many pieces of a trunk are drawn as one */
     struct cone_tree_light light;
 };
 /* Whether anything within a sphere around a place of the camera's may be seen. */
@@ -74,5 +75,9 @@ void cone_twigs_emit(const struct cone_picture *picture, const struct cone_tree 
                      size_t count, struct cone_strip *strips, size_t ends[CONE_LANES]);
 size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree *tree, size_t bark,
                       struct cone_strip *strips);
+
+/* Measures the outline of a plant whose twigs are drawn at a level, or at -1: whatever suits. */
+void cone_outline_measure(struct arena *arena, const struct scene *scene, enum cone_shaders shaders,
+                          int level, struct cone_plant *plant);
 
 #endif

@@ -166,6 +166,9 @@ static bool view_of(const struct cone_picture *picture, const struct cone_tree *
                                : -1;
     seen->gain = tree->light.cones ? cone_tree_light_gain(&tree->light, middle_m) : 1;
     seen->mix = mix_at(picture, tree, twig, camera_m[2], tree->scale * away);
+    seen->part = cone_outline_part(&tree->plant->outline, middle_m, twig->radius_m, seen->eye,
+                                   tree->scale * picture->focal_px /
+                                       fmaxf(camera_m[2], picture->view->near_m));
     return true;
 }
 
@@ -312,16 +315,21 @@ static size_t strips_of(const struct cone_picture *picture, const struct cone_tr
                         struct cone_strip *strips)
 {
     size_t count = 0;
-    if (!seen->twig->twig->cones_count)
-        return axis_emit(picture, tree, seen, 1, strips);
-    if (seen->mix.shares[CONE_TWIG] > 0)
-        count += whole_emit(picture, tree, seen, strips);
-    if (seen->mix.shares[CONE_TWIG] < 1)
-        count += axis_emit(picture, tree, seen, 1 - seen->mix.shares[CONE_TWIG], strips + count);
-    if (seen->mix.shares[CONE_CONE] > 0)
-        count += cone_cones_emit(picture, tree, seen, beam, strips + count);
-    if (seen->mix.shares[CONE_NEEDLE] > 0)
-        count += cone_needles_emit(picture, tree, seen, beam, strips + count);
+    if (!seen->twig->twig->cones_count) {
+        count = axis_emit(picture, tree, seen, 1, strips);
+    } else {
+        if (seen->mix.shares[CONE_TWIG] > 0)
+            count += whole_emit(picture, tree, seen, strips);
+        if (seen->mix.shares[CONE_TWIG] < 1)
+            count +=
+                axis_emit(picture, tree, seen, 1 - seen->mix.shares[CONE_TWIG], strips + count);
+        if (seen->mix.shares[CONE_CONE] > 0)
+            count += cone_cones_emit(picture, tree, seen, beam, strips + count);
+        if (seen->mix.shares[CONE_NEEDLE] > 0)
+            count += cone_needles_emit(picture, tree, seen, beam, strips + count);
+    }
+    for (size_t k = 0; k < count && seen->part < 1; k++)
+        strips[k].opacity *= seen->part;
     return count;
 }
 

@@ -35,6 +35,8 @@ static void bark_cut(const struct conifer_branch *branch, size_t pieces, struct 
         for (int end = 0; end < 2; end++)
             barks[k].radius_m[end] =
                 branch->radius_from_m + at[end] * (branch->radius_to_m - branch->radius_from_m);
+        barks[k].place = (uint32_t)k;
+        barks[k].pieces = (uint32_t)pieces;
     }
 }
 
@@ -50,12 +52,36 @@ static void deal(void *items, size_t count, size_t size, struct random *random, 
     }
 }
 
+/* Sums of the areas of the first so many, so that few can stand for all. */
+static void areas_sum(struct arena *arena, struct cone_plant *plant)
+{
+    const size_t boughs = plant->barks_count - plant->trunks_count;
+    double sum = 0;
+    plant->twigs_areas = ARENA_ARRAY(arena, float, plant->twigs_count + 1);
+    plant->barks_areas = ARENA_ARRAY(arena, float, boughs + 1);
+    for (size_t i = 0; i < plant->twigs_count; i++) {
+        const struct cone_twig *twig = &plant->twigs[i];
+        sum += twig->length_m > 0
+                   ? (double)twig->length_m * (double)twig->radius_m
+                   : (double)twig->twig->length_m * (double)twig->twig->axis_radius_m;
+        plant->twigs_areas[i + 1] = (float)sum;
+    }
+    sum = 0;
+    for (size_t i = 0; i < boughs; i++) {
+        const struct cone_bark *bark = &plant->barks[plant->trunks_count + i];
+        sum += (double)length_of(bark->from_m, bark->to_m) *
+               (double)(bark->radius_m[0] + bark->radius_m[1]);
+        plant->barks_areas[i + 1] = (float)sum;
+    }
+}
+
 static void barks_fill(struct arena *arena, struct cone_plant *plant, struct random *random)
 {
     const struct conifer *conifer = plant->conifer;
     const float longest_m = fmaxf(2 * plant->radius_m * PIECE_SHARE, 1e-6f);
     float thickest_m = 0;
     size_t count = 0;
+    plant->piece_m = longest_m;
     for (size_t i = 0; i < conifer->branches_count; i++) {
         count += pieces_of(&conifer->branches[i], longest_m);
         thickest_m = fmaxf(thickest_m, conifer->branches[i].radius_from_m);
@@ -133,5 +159,6 @@ struct cone_plant *cone_plant_create(struct arena *arena, const struct conifer *
         plant->twigs[i].first_cone = (uint32_t)plant->cones_count;
         plant->cones_count += plant->twigs[i].twig->cones_count;
     }
+    areas_sum(arena, plant);
     return plant;
 }

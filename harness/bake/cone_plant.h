@@ -3,12 +3,14 @@
 #ifndef TREELINE_BAKE_CONE_PLANT_H
 #define TREELINE_BAKE_CONE_PLANT_H
 
+#include "bake/cone_outline.h"
 #include "bake/needles.h"
 #include "base/arena.h"
 #include "plant/conifer.h"
 
 struct cone_bark {
     float from_m[3], to_m[3], radius_m[2];
+    uint32_t place, pieces; /* along its branch, of so many */
 };
 
 struct cone_twig {
@@ -25,12 +27,16 @@ struct cone_plant {
     const struct conifer *conifer;
     size_t barks_count, trunks_count; /* the first so many barks are always drawn */
     struct cone_bark *barks;
+    float piece_m;      /* about as long as they are */
+    float *barks_areas; /* sums of length x width of the first so many behind the trunks */
     size_t twigs_count;
     struct cone_twig *twigs;
+    float *twigs_areas; /* sums of length x width of the first so many; count + 1 */
     size_t cones_count;
     float center_m[3], radius_m; /* of a sphere that holds all */
     float low_m, high_m;         /* heights */
     float area_m2;               /* of its outline from the side, about */
+    struct cone_outline outline; /* filled by cone_outline_measure; else nothing is lowered */
 };
 
 struct cone_plant *cone_plant_create(struct arena *arena, const struct conifer *conifer);

@@ -29,6 +29,7 @@ enum status cones_prepare(struct workspace *workspace, const struct scene *scene
         if (status)
             return status;
         struct cone_plant *plant = cones->plants[i] = cone_plant_create(arena, conifer);
+        cone_outline_measure(arena, scene, options->shaders, options->choice.forced, plant);
         float x = plant->center_m[0], z = plant->center_m[2];
         bounds[i] = (struct cull_bound){plant->center_m[1], plant->radius_m + sqrtf(x * x + z * z)};
     }
@@ -77,6 +78,14 @@ enum status cones_draw(struct workspace *workspace, struct cones *cones, const s
     const struct cone_picture picture = picture_of(workspace, cones, view);
     if (cones->lights)
         cone_lights_turn(cones->lights, view->sun_direction, workspace->threads);
+    float bark[3];
+    if (cones_within(cones, &picture, bark)) {
+        for (size_t i = 0; i < (size_t)view->width_px * (size_t)view->height_px; i++) {
+            memcpy(target->pixels + 4 * i, bark, sizeof bark);
+            target->pixels[4 * i + 3] = 1;
+        }
+        return STATUS_OK;
+    }
     cone_canvas_begin(workspace, cones->canvas, view);
     workspace->tally.lookups += cones->naive ? cones_naive_draw(workspace, cones, &picture)
                                              : cones_fast_draw(workspace, cones, &picture);

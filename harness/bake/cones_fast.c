@@ -245,11 +245,13 @@ static void row_cut(const struct cone_strip *strip, float half, float y, int *fi
     *last = (int)floorf(high);
 }
 
-static void strip_draw(struct cone_canvas *canvas, const struct cone_strip *strip,
-                       const struct rect *rect, const int tile[2])
+/* Returns how many pixels were asked. */
+static uint64_t strip_draw(struct cone_canvas *canvas, const struct cone_strip *strip,
+                           const struct rect *rect, const int tile[2])
 {
     const float half = fmaxf(strip->half_px[0], strip->half_px[1]);
     int low[2], high[2];
+    uint64_t pixels = 0;
     for (int i = 0; i < 2; i++) {
         low[i] = rect->low[i] > tile[i] ? rect->low[i] : tile[i];
         high[i] = rect->high[i] < tile[i] + CONE_TILE - 1 ? rect->high[i] : tile[i] + CONE_TILE - 1;
@@ -258,6 +260,7 @@ static void strip_draw(struct cone_canvas *canvas, const struct cone_strip *stri
         int first = low[0], last = high[0];
         row_cut(strip, half, (float)y, &first, &last);
         size_t row = (size_t)y * (size_t)canvas->width_px;
+        pixels += last >= first ? (uint64_t)(last - first + 1) : 0;
         for (int x = first; x <= last; x++) {
             struct cone_place place;
             float w = cone_strip_hides(strip, (float)x, (float)y, &place);
@@ -265,6 +268,7 @@ static void strip_draw(struct cone_canvas *canvas, const struct cone_strip *stri
                 cone_canvas_put(canvas, row + (size_t)x, strip, &place, w);
         }
     }
+    return pixels;
 }
 
 /* Whether more can be seen through a tile. */
@@ -287,18 +291,21 @@ static bool is_open(const struct cone_canvas *canvas, const int tile[2], float s
     return false;
 }
 
-static void tile_draw(struct cones *cones, size_t index)
+static uint64_t tile_draw(struct cones *cones, size_t index)
 {
     const struct cones_fast *fast = cones->fast;
     struct cone_canvas *canvas = cones->canvas;
     const int tile[2] = {(int)(index % (size_t)canvas->across) * CONE_TILE,
                          (int)(index / (size_t)canvas->across) * CONE_TILE};
     const uint32_t begin = fast->first[index], end = fast->first[index + 1];
+    uint64_t pixels = 0;
     for (uint32_t at = begin; at < end && canvas->open[index]; at++) {
-        strip_draw(canvas, &fast->strips[fast->entries[at]], &fast->rects[fast->entries[at]], tile);
+        const uint32_t entry = fast->entries[at];
+        pixels += strip_draw(canvas, &fast->strips[entry], &fast->rects[entry], tile);
         if ((at - begin) % CHECK == CHECK - 1 || at + 1 == end)
             canvas->open[index] = is_open(canvas, tile, cones->options.stop);
     }
+    return pixels;
 }
 
 static size_t batch_sort(struct cones_fast *fast, size_t jobs)
@@ -320,7 +327,7 @@ uint64_t cones_fast_draw(struct workspace *workspace, struct cones *cones,
     struct cull_list list = cull_view(cones->cull, picture->view, CULL_FRONT_TO_BACK);
     const size_t tiles = (size_t)cones->canvas->across * (size_t)cones->canvas->down;
     struct place at = {0, 0};
-    uint64_t strips = 0;
+    uint64_t met = 0;
     while (at.tree < list.count) {
         size_t jobs = batch_cut(cones, picture, &list, &at);
 #pragma omp parallel for num_threads(workspace->threads) schedule(dynamic, 4)
@@ -328,11 +335,11 @@ uint64_t cones_fast_draw(struct workspace *workspace, struct cones *cones,
             job_emit(cones, picture, &fast->jobs[j]);
         size_t count = batch_sort(fast, jobs);
         bin(workspace, cones, count);
-#pragma omp parallel for num_threads(workspace->threads) schedule(dynamic, 1)
+#pragma omp parallel for num_threads(workspace->threads) schedule(dynamic, 1) reduction(+ : met)
         for (size_t tile = 0; tile < tiles; tile++)
             if (cones->canvas->open[tile])
-                tile_draw(cones, tile);
-        strips += count;
+                met += tile_draw(cones, tile);
+        met += count;
     }
-    return strips;
+    return met;
 }

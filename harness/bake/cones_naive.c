@@ -147,8 +147,13 @@ static void tree_meet(const struct cones *cones, const struct cone_picture *pict
     cone_tree_of(picture, instance, &tree);
     const struct cone_beam beam = beam_in(picture, &tree, x_px, y_px, world);
     const size_t twigs = tree.plant->twigs_count;
-    size_t found = cone_bvh_find(cones->naive->items[cones->scene->instances[instance].species],
-                                 &beam, work->items, cones->naive->items_most, &work->met);
+    size_t found = 0;
+    if (tree.trunk_step > 1) /* pieces of it are drawn as one: small, so that all may be met */
+        for (; found < twigs + tree.plant->barks_count; found++)
+            work->items[found] = (uint32_t)found;
+    else
+        found = cone_bvh_find(cones->naive->items[cones->scene->instances[instance].species], &beam,
+                              work->items, cones->naive->items_most, &work->met);
     for (size_t k = 0; k < found; k++) {
         size_t item = work->items[k], count = 0;
         if (item < twigs && (float)item < tree.twigs)

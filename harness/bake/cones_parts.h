@@ -21,11 +21,15 @@ struct cones {
 };
 
 struct cones_fast *cones_fast_create(struct arena *arena, const struct cones *cones);
-/* Returns how many strips there were. */
+/* Returns how many strips there were, and pixels that they were put to. */
 uint64_t cones_fast_draw(struct workspace *workspace, struct cones *cones,
                          const struct cone_picture *picture);
 struct cones_naive *cones_naive_create(struct arena *arena, const struct cones *cones);
 uint64_t cones_naive_draw(struct workspace *workspace, struct cones *cones,
                           const struct cone_picture *picture);
+
+/* Whether the eye stands within a tree's trunk or bough: then the bark's light is all that is seen.
+ */
+bool cones_within(const struct cones *cones, const struct cone_picture *picture, float rgb[3]);
 
 #endif
