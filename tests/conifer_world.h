@@ -17,19 +17,16 @@ static inline struct cones_options options_of(int level)
                                   .edges = true};
 }
 
-/* Twigs on one hardly visible branch far below. */
-static inline struct plant *plant_of(struct arena *arena, const struct conifer_twig *twigs,
-                                     size_t count)
+/* Twigs on a branch wherever it is. */
+static inline struct plant *plant_on(struct arena *arena, const struct conifer_branch *branch,
+                                     const struct conifer_twig *twigs, size_t count)
 {
     struct conifer *conifer = ARENA_NEW(arena, struct conifer);
     struct error error = {0};
     conifer->branches_count = 1;
     conifer->branches = ARENA_NEW(arena, struct conifer_branch);
-    *conifer->branches = (struct conifer_branch){.from_m = {0, -0.1f, 0},
-                                                 .to_m = {0, -0.11f, 0},
-                                                 .radius_from_m = 1e-5f,
-                                                 .radius_to_m = 1e-5f,
-                                                 .twigs_count = (uint32_t)count};
+    *conifer->branches = *branch;
+    conifer->branches->twigs_count = (uint32_t)count;
     conifer->twigs_count = count;
     conifer->twigs = ARENA_ARRAY(arena, struct conifer_twig, count);
     memcpy(conifer->twigs, twigs, count * sizeof *twigs);
@@ -41,6 +38,14 @@ static inline struct plant *plant_of(struct arena *arena, const struct conifer_t
     if (conifer_finish(conifer, &error))
         fail_msg("%s", error.text);
     return plant_from_conifer(arena, "test", conifer);
+}
+
+/* Twigs on one hardly visible branch far below. */
+static inline struct plant *plant_of(struct arena *arena, const struct conifer_twig *twigs,
+                                     size_t count)
+{
+    static const struct conifer_branch hidden = {{0, -0.1f, 0}, {0, -0.11f, 0}, 1e-5f, 1e-5f, 0, 0};
+    return plant_on(arena, &hidden, twigs, count);
 }
 
 static inline void plant_add(struct world *world, struct plant *plant)

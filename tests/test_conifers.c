@@ -92,6 +92,39 @@ static void test_conifers__needles_shine_at_every_level_as_traced(void **state)
     }
 }
 
+/* A disc of bark between twig and sun, beside the picture. */
+static void test_conifers__needles_in_the_shade_do_not_shine(void **state)
+{
+    (void)state;
+    for (int level = 0; level < CONE_LEVELS; level++) {
+        double shines[2];
+        for (int shaded = 0; shaded < 2; shaded++) {
+            struct world world = world_create(48, 48, 0.05);
+            struct conifer_twig twig = twig_along(1, 0.5, 0.7);
+            world_look(&world, 0, 0.05f, 12, 0.1f, 0.05f, 0);
+            world_sun(&world, 0.5, 0.7, 1.4);
+            struct conifer_branch disc = {.radius_from_m = 0.35f, .radius_to_m = 0.35f};
+            for (int i = 0; i < 3; i++) {
+                const float sun = (shaded ? 1.0f : -1.0f) * world.view.sun_direction[i];
+                disc.from_m[i] = 2.2f * sun;
+                disc.to_m[i] = 2.3f * sun;
+            }
+            plant_add(&world, plant_on(world.arena, &disc, &twig, 1));
+            struct cones_options options = options_of(level);
+            double light[2];
+            for (unsigned on = 0; on < 2; on++)
+                light[on] = sum_of(
+                    drawn(&world, &options, EFFECT_SUN_SHADOWS | (on ? EFFECT_SPECULAR : 0u), 1),
+                    0);
+            shines[shaded] = light[1] - light[0];
+            arena_destroy(world.arena);
+        }
+        if (!(shines[0] > 0.1) || !(shines[1] < 0.02 * shines[0]))
+            fail_msg("level %d: shines by %.4f in the sun, %.4f in the shade", level, shines[0],
+                     shines[1]);
+    }
+}
+
 /* Seen from the side (11) leaves 2 sin phi of a cone's needles, where they are the integral of
  * their sines; (19) has N r cot phi / dh of a twig opaque. */
 static void test_conifers__as_printed_a_twig_covers_what_the_paper_says(void **state)
@@ -301,11 +334,17 @@ static void test_conifers__a_hundred_thousand_trees_take_less_than_256_bytes_eac
         used[many] = arena_used_bytes(world.arena);
         struct cones_options options = options_of(-1);
         struct cones *cones;
+        struct target target = {.width_px = 40, .height_px = 36, .format = TARGET_RGBA32F};
+        target.pixels = ARENA_ARRAY(world.arena, float, 4 * 40 * 36);
+        world_look(&world, 160, 20, 300, 160, 0, 100);
         assert_int_equal(cones_prepare(&workspace, &world.scene, &options, &cones), STATUS_OK);
+        assert_int_equal(cones_draw(&workspace, cones, &world.view, &target), STATUS_OK);
         used[many] = arena_used_bytes(world.arena) - used[many];
         arena_destroy(world.arena);
     }
-    assert_true((used[1] - used[0]) / 100000 < 256);
+    const size_t each = (used[1] - used[0]) / 100000;
+    if (each >= 256)
+        fail_msg("%zu bytes a tree", each);
 }
 
 int main(void)
@@ -314,6 +353,7 @@ int main(void)
         cmocka_unit_test(test_conifers__a_needle_across_a_pixel_hides_its_width_of_it),
         cmocka_unit_test(test_conifers__every_level_of_a_far_twig_covers_and_shines_as_traced),
         cmocka_unit_test(test_conifers__needles_shine_at_every_level_as_traced),
+        cmocka_unit_test(test_conifers__needles_in_the_shade_do_not_shine),
         cmocka_unit_test(test_conifers__as_printed_a_twig_covers_what_the_paper_says),
         cmocka_unit_test(test_conifers__relief_before_half_a_pixel_leaves_half_to_what_is_behind),
         cmocka_unit_test(test_conifers__levels_turn_into_each_other_without_a_leap),
