@@ -47,6 +47,27 @@ static enum status prepare(struct trial *trial, const char *text)
     return gl_check(trial->workspace.gl, "prepare", error);
 }
 
+/* A world of conifers for a method that refuses the mesh, if it takes that one. */
+static enum status scene_make(struct trial *trial)
+{
+    const struct method *method = trial->method;
+    struct error *error = trial->subject->error;
+    struct world conifers = trial->world;
+    const char *reason;
+    enum status status = world_make(trial->arena, &trial->world, &trial->scene, error);
+    if (status || trial->world.file || !method->supported ||
+        !method->supported(trial->scene, &reason))
+        return status;
+    struct scene *scene;
+    conifers.conifers = true;
+    status = world_make(trial->arena, &conifers, &scene, error);
+    if (status || method->supported(scene, &reason))
+        return status; /* prepare says what is refused */
+    trial->world = conifers;
+    trial->scene = scene;
+    return STATUS_OK;
+}
+
 enum status trial_open(struct subject *subject, const struct trial_request *request,
                        struct trial *trial)
 {
@@ -60,7 +81,7 @@ enum status trial_open(struct subject *subject, const struct trial_request *requ
                                           .threads = clock_cpu_count(),
                                           .seed = 1};
     subject_say(subject, "making the scene");
-    enum status status = world_make(trial->arena, &request->world, &trial->scene, subject->error);
+    enum status status = scene_make(trial);
     if (!status) {
         trial->scene->effects &= ~request->scene_effects_off;
         if (request->scene_effects_off & EFFECT_FOG)

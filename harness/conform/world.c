@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/random.h"
+#include "conform/world_conifer.h"
 #include "scene/camera.h"
 
 #include <math.h>
@@ -227,7 +228,8 @@ enum status world_make(struct arena *arena, const struct world *world, struct sc
         .sky = {{0.16f, 0.32f, 0.7f}, {0.62f, 0.74f, 0.88f}, {0.17f, 0.23f, 0.09f}},
         .fog = {{0.25f, 0.3f, 0.5f}, 0.015f / scale},
     };
-    struct plant *plant = plant_from_mesh(arena, "tree", world_mesh(arena));
+    struct plant *plant =
+        world->conifers ? world_conifer(arena) : plant_from_mesh(arena, "tree", world_mesh(arena));
     scene->species = ARENA_NEW(arena, struct species);
     *scene->species = (struct species){"tree", plant, 1, 0.9f * scale, 1.1f * scale};
     forest_make(arena, scene, world, scale);
@@ -242,6 +244,7 @@ enum status world_make(struct arena *arena, const struct world *world, struct sc
     memcpy(key->target_m, (float[3]){0, 10 * scale, 0}, sizeof key->target_m);
     camera_depths(scene, &key->eye_m, 1, &scene->camera.near_m, &scene->camera.far_m);
     scene->hash = hash_double(hash_double(hash_u64(1, world->trees), scale), world->spacing_m);
+    scene->hash = hash_u64(scene->hash, world->conifers);
     return STATUS_OK;
 }
 

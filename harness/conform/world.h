@@ -11,6 +11,7 @@ struct world {
     double stretch;          /* of every tree; 0: 1 */
     double spacing_m;        /* between trees before scaling; 0: 12 */
     int width_px, height_px; /* 0: 64 x 48 */
+    bool conifers;           /* trees of needles instead of a mesh */
     const char *file;        /* of a scene; NULL: the world is made here */
 };
 
