@@ -86,10 +86,19 @@ static void test_outline__a_tree_of_any_size_covers_what_is_traced(void **state)
     lone_create(&lone);
     for (size_t e = 0; e < 4; e++) {
         const double traced = lone_covers(&lone, elevations_rad[e], 48, true, 3);
+        double before = 0;
         for (size_t k = 0; k < sizeof heights_px / sizeof *heights_px; k++) {
             double covered = lone_covers(&lone, elevations_rad[e], heights_px[k], false, 8);
-            print_message("%.2f rad %5.2f px: %.3f of %.2f m2\n", elevations_rad[e], heights_px[k],
-                          covered / traced, traced);
+            double ratio = covered / traced;
+            /* within a quarter: of one to four pixels toward the horizon it is 1.24, below a
+             * quarter of a pixel from above .84 */
+            if (!(fabs(ratio - 1) < 0.26))
+                fail_msg("%.2f rad, %.2f px: %.3f of what is traced", elevations_rad[e],
+                         heights_px[k], ratio);
+            if (k > 0 && !(fabs(ratio - before) < 0.12))
+                fail_msg("%.2f rad, %.2f px: from %.3f to %.3f", elevations_rad[e], heights_px[k],
+                         before, ratio);
+            before = ratio;
         }
     }
     arena_destroy(lone.world.arena);
