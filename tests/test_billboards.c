@@ -280,7 +280,8 @@ static void test_billboards__terrain_in_front_hides_and_behind_does_not(void **s
     float heights[4] = {-0.01f, -0.01f, -0.01f, -0.01f}, normals[4][3];
     for (int i = 0; i < 4; i++)
         normals[i][0] = normals[i][2] = 0, normals[i][1] = 1;
-    scene->terrain = (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}, NULL, 0};
+    scene->terrain =
+        (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}, NULL, 0};
     static const size_t columns[] = {8, 7};
     static const char *const options[] = {"alpha=blend,layout=hemisphere,views=121",
                                           "alpha=blend,layout=hemisphere,views=121,depth=on"};

@@ -118,7 +118,8 @@ static void test_distant__terrain_in_front_hides_and_below_does_not(void **state
     float heights[4] = {-0.01f, -0.01f, -0.01f, -5}, normals[4][3];
     for (int i = 0; i < 4; i++)
         normals[i][0] = normals[i][2] = 0, normals[i][1] = 1;
-    scene->terrain = (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}, NULL, 0};
+    scene->terrain =
+        (struct terrain){2, 2, 100, 100, heights, normals, {0.2f, 0.2f, 0.2f}, NULL, 0};
     struct view view = tree_view(scene, 0.6f, 0.5f, 800, 60);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
     struct frame *drawn = tree_draw_as(f->arena, f->method, "distant=16", LOD_AUTO, TARGET_RGBA32F,

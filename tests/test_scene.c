@@ -162,7 +162,8 @@ static const struct {
      "trees.standard[1]: value is 5000000; allowed: 0..4000000"},
     {SCENE_WITH(",\"trees\":{\"standard\":[1.5]}"), "trees.standard: value is 1.5; allowed: whole"},
     {SCENE_WITH(",\"effects\":[\"shadow\"]"),
-     "effects: value is 'shadow'; allowed: two-sided|ambient|sun-shadows|sky-occlusion|fog|specular"},
+     "effects: value is 'shadow'; allowed: "
+     "two-sided|ambient|sun-shadows|sky-occlusion|fog|specular"},
     {SCENE_WITH(",\"effects\":[\"fog\"]"), "fog: is missing or has no density"},
     {SCENE_WITH(",\"ambient\":[1,2]"), "ambient: has 2 values; allowed: 3"},
     {SCENE_WITH(",\"light\":{\"elevation_deg\":91}"),

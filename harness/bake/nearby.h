@@ -24,8 +24,7 @@ struct shadow_map;
  * the camera's path comes so near, else by the first picture that needs them. shadows: received;
  * NULL: none. */
 enum status nearby_prepare(struct workspace *workspace, const struct scene *scene, float radii,
-                           float octaves, const struct shadow_map *shadows,
-                           struct nearby **nearby);
+                           float octaves, const struct shadow_map *shadows, struct nearby **nearby);
 
 /* Takes the near trees out of a list that is sorted by depth; those that are not near altogether
  * stay in it, too. */

@@ -25,7 +25,7 @@ static uint16_t mean_depth(const struct slices *slices, const size_t at[2], bool
     for (int k = 0; k < 2; k++)
         weights[k] = at[k] == SIZE_MAX ? 0 : (float)slices->color[at[k]][3] / 255.0f;
     weights[!from_behind] *= 1 - weights[from_behind]; /* the nearer one hides the other */
-    for (int k = 0; k < 2; k++) /* 0 is the front half */
+    for (int k = 0; k < 2; k++)                        /* 0 is the front half */
         if (weights[k] > 0)
             depth += weights[k] / (weights[0] + weights[1]) *
                      (0.5f * (float)slices->depth[at[k]] + (k == 0 ? 32767.5f : 0));

@@ -18,9 +18,9 @@
  * Fog (EFFECT_FOG): f C + (1 - f) fog.color, f = exp(-fog.density_per_m * distance to the eye); the
  * sky is not fogged. Sky: sky_radiance() in scene.h.
  *
- * The shadow mask is a picture of its own, for the error of shadows alone: a surface is (lit, 1, 0),
- * lit 1 where the sun's light arrives (D > 0 and S = 1) and 0 elsewhere; the sky is (0, 0, 0). So a
- * pixel's red over its green is the sun's mean visibility there. Alpha as ever.
+ * The shadow mask is a picture of its own, for the error of shadows alone: a surface is (lit, 1,
+ * 0), lit 1 where the sun's light arrives (D > 0 and S = 1) and 0 elsewhere; the sky is (0, 0, 0).
+ * So a pixel's red over its green is the sun's mean visibility there. Alpha as ever.
  *
  * A pixel is the mean over its square (box filter, 1 px). Alpha is the fraction of the pixel where
  * a plant is the first thing seen. Everything is linear RGB; alpha-tested texels are opaque from

@@ -41,7 +41,8 @@ struct embree_part {
     const void *data; /* for opaque */
 };
 
-/* Everything is copied, cones into the arena. positions: vertices_count x 3; triangles: triangles_count x 3. */
+/* Everything is copied, cones into the arena. positions: vertices_count x 3; triangles:
+ * triangles_count x 3. */
 struct embree_mesh {
     const float *positions;
     size_t vertices_count;
