@@ -110,7 +110,9 @@ $(GEN)/%.o: $(GEN)/%.c | $(GENERATED_H)
 
 # Generated: the sorted list of methods, the GL loader, shaders as C text.
 # Always asked, since a file that is gone is newer than nothing; written anew only when it changed.
-keep_if_same = cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+# Of this process: several may ask at once.
+NEW := new-$(shell echo $$PPID)
+keep_if_same = cmp -s $@.$(NEW) $@ && rm $@.$(NEW) || mv $@.$(NEW) $@
 $(GEN)/methods_builtin.c: FORCE
 	@mkdir -p $(@D)
 	@{ echo '/* Generated from the file names in methods/. */'; echo '#include "method/method.h"'; \
@@ -118,7 +120,7 @@ $(GEN)/methods_builtin.c: FORCE
 	for n in $$names; do echo "extern const struct method $${n//-/_}_method;"; done; \
 	echo 'const struct method *const methods_builtin[] = {'; \
 	for n in $$names; do echo "    &$${n//-/_}_method,"; done; \
-	echo '    NULL,'; echo '};'; } > $@.new
+	echo '    NULL,'; echo '};'; } > $@.$(NEW)
 	@$(keep_if_same)
 
 GLCOREARB := $(firstword $(wildcard /usr/include/GL/glcorearb.h))
@@ -145,7 +147,7 @@ $(GEN)/build_facts.h: FORCE
 	list="embree $(call version_of,embree$(EMBREE)/rtcore.h,RTC_VERSION_STRING)"; \
 	list="$$list, meshoptimizer $(call version_of,meshoptimizer.h,MESHOPTIMIZER_VERSION)"; \
 	for p in OpenImageIO $(PKG); do list="$$list, $$p $$(pkg-config --modversion $$p 2>/dev/null)"; done; \
-	echo "#define TREELINE_LIBRARIES \"$$list\""; } > $@.new
+	echo "#define TREELINE_LIBRARIES \"$$list\""; } > $@.$(NEW)
 	@$(keep_if_same)
 .PHONY: FORCE
 FORCE:
@@ -175,6 +177,7 @@ $(GEN)/%.glsl.h: harness/calibrate/%.glsl $(GLSL_TO_C)
 # Tests: one program a file, against the archive; all of it where plugins are loaded. They compute little themselves:
 # they are compiled in a fraction of the time without optimization.
 TEST_MODE := $(if $(filter release,$(config)),-O1,-O0)
+$(BUILD)/tests/test_backdrop: TEST_MODE := -O1
 comma := ,
 $(BUILD)/tests/test_cell $(BUILD)/tests/test_conform: WHOLE := yes
 $(BUILD)/tests/%: tests/%.c $(ARCHIVE) | $(GENERATED_H)
