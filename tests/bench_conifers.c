@@ -12,6 +12,8 @@
 #include "stats/stats.h"
 #include "truth/reference.h"
 
+#include "bench_error.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,27 +64,6 @@ static double way_seconds(const struct bench *bench, struct way *way)
     const double start = clock_wall_seconds();
     way->method->draw(&way->workspace, way->state, &bench->view, &target);
     return clock_wall_seconds() - start;
-}
-
-/* Root mean square over RGB of boxes of side x side pixels. */
-static double rmse(const struct frame *a, const struct frame *b, int side)
-{
-    double sum = 0;
-    size_t count = 0;
-    for (int y = 0; y + side <= a->height_px; y += side)
-        for (int x = 0; x + side <= a->width_px; x += side, count++)
-            for (int c = 0; c < 3; c++) {
-                double off = 0;
-                for (int k = 0; k < side * side; k++) {
-                    size_t at =
-                        (size_t)(y + k / side) * (size_t)a->width_px + (size_t)(x + k % side);
-                    off +=
-                        (double)a->rgba[4 * at + (size_t)c] - (double)b->rgba[4 * at + (size_t)c];
-                }
-                off /= side * side;
-                sum += off * off / 3;
-            }
-    return sqrt(sum / (double)count);
 }
 
 static void seconds_say(const char *name, const double *seconds, int rounds)

@@ -5,25 +5,9 @@
 #include "bake/needles_double.h"
 #include "base/random.h"
 #include "needles_golden.h"
+#include "needles_ways.h"
 
 #include <string.h>
-
-#define PI 3.14159265358979324
-#define COUNT(array) (sizeof(array) / sizeof *(array))
-
-static void unit(const double v[3], double out[3])
-{
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++)
-        out[i] = v[i] / length;
-}
-
-static void random_direction(struct random *random, double out[3])
-{
-    double z = 2 * random_double(random) - 1, turn = 2 * PI * random_double(random);
-    double flat = sqrt(1 - z * z);
-    out[0] = flat * cos(turn), out[1] = flat * sin(turn), out[2] = z;
-}
 
 static struct needles_sight_double golden_sight(const struct golden_g2 *g)
 {

@@ -65,8 +65,8 @@ enum status plot_masks(const struct book *book, const struct group *group, const
                        struct figure *figure, struct error *error);
 enum status plot_masks_distance(const struct book *book, const struct group *group,
                                 const char *folder, struct figure *figure, struct error *error);
-/* How many series of the same method come before this one: tells them apart by dashes. */
-int plot_variant(const struct book *book, size_t series);
+/* The curve of a row through the points of a block of the data, with its label in the key. */
+void plot_row_line(struct plot *plot, const struct row *row, int block);
 /* Cells of a group under the machine's roof: frames a second of all of them; triangles a second
  * against their size; other work against work a byte. */
 enum roofline_kind {

@@ -6,7 +6,8 @@
 /* More lines than this no static plot tells apart. */
 enum { LINES_MAX = 24 };
 
-int plot_variant(const struct book *book, size_t series)
+/* How many series of the same method come before this one: tells them apart by dashes. */
+static int plot_variant(const struct book *book, size_t series)
 {
     size_t *method_of = ARENA_ARRAY(book->arena, size_t, book->series_count);
     for (size_t i = 0; i < book->rows_count; i++)
@@ -15,6 +16,21 @@ int plot_variant(const struct book *book, size_t series)
     for (size_t s = 0; s < series; s++)
         before += method_of[s] == method_of[series];
     return before;
+}
+
+void plot_row_line(struct plot *plot, const struct row *row, int block)
+{
+    const struct book *book = plot->book;
+    int variant = plot_variant(book, row->series);
+    plot_curve(plot);
+    fprintf(
+        plot->gp,
+        "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
+        "%d linecolor rgb \"#%06x\" title ",
+        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
+        tint_rgb(tint_method(book, row->method_index)));
+    plot_text(plot->gp, row->label);
+    plot->key_rows++;
 }
 
 /* One series of a family: frame rate by trees, with its law. */

@@ -117,16 +117,7 @@ static void put_curve(struct plot *plot, const struct row *row, enum view_axis a
     int block = plot_block(plot, row->label);
     for (size_t i = 0; i < count; i++)
         fprintf(plot->dat, "%.9g %.9g\n", sights[i].at, fmax(sights[i].error, plot->y.low));
-    int variant = plot_variant(book, row->series);
-    plot_curve(plot);
-    fprintf(
-        plot->gp,
-        "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
-        "%d linecolor rgb \"#%06x\" title ",
-        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
-        tint_rgb(tint_method(book, row->method_index)));
-    plot_text(plot->gp, row->label);
-    plot->key_rows++;
+    plot_row_line(plot, row, block);
 }
 
 static void put_noise(struct plot *plot, const struct noise *noise)
@@ -207,18 +198,10 @@ static void put_pace(struct plot *plot, const struct row *row)
     size_t count = paces_of(row, paces);
     if (!count)
         return;
-    int block = plot_block(plot, row->label), variant = plot_variant(book, row->series);
+    int block = plot_block(plot, row->label);
     for (size_t i = 0; i < count; i++)
         fprintf(plot->dat, "%.9g %.9g\n", paces[i].at, paces[i].error);
-    plot_curve(plot);
-    fprintf(
-        plot->gp,
-        "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
-        "%d linecolor rgb \"#%06x\" title ",
-        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
-        tint_rgb(tint_method(book, row->method_index)));
-    plot_text(plot->gp, row->label);
-    plot->key_rows++;
+    plot_row_line(plot, row, block);
 }
 
 enum status plot_pace(const struct book *book, const struct group *group, const char *folder,
