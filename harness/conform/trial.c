@@ -83,6 +83,7 @@ enum status trial_open(struct subject *subject, const struct trial_request *requ
     subject_say(subject, "making the scene");
     enum status status = scene_make(trial);
     if (!status) {
+        /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): world_make gave a scene */
         trial->scene->effects &= ~request->scene_effects_off;
         if (request->scene_effects_off & EFFECT_FOG)
             trial->scene->fog.density_per_m = 0;

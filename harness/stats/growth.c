@@ -46,7 +46,8 @@ static bool improve(enum growth_law law, double parameters[2], const double *x, 
     if (!(determinant > 1e-14 * a00 * a11))
         return false;
     double step[2] = {(a11 * b0 - a01 * b1) / determinant, (a00 * b1 - a01 * b0) / determinant};
-    for (double part = 1; part > 1e-6; part /= 2) {
+    for (int halvings = 0; halvings < 20; halvings++) {
+        double part = ldexp(1, -halvings);
         double tried[2] = {parameters[0] + part * step[0], parameters[1] + part * step[1]};
         double next = squares(law, tried, x, y, count);
         if (!(next < *sum))
