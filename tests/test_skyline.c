@@ -97,7 +97,8 @@ static void test_skyline__a_wall_hides_as_much_along_every_azimuth(void **unused
     (void)unused;
 }
 
-/* Along axes and diagonals lines pass through samples: exact. Elsewhere the mean of two lines. */
+/* Along axes and diagonals lines pass through samples: exact. Elsewhere what is far is the
+ * mean of two lines. */
 static void test_skyline__sweeps_find_what_a_walk_over_every_edge_finds(void **unused)
 {
     enum { SIDE = 61, AZIMUTHS = 16 };
@@ -117,7 +118,7 @@ static void test_skyline__sweeps_find_what_a_walk_over_every_edge_finds(void **u
                 sum += error;
                 count++;
             }
-        assert_true(sum / count < 0.02); /* slopes reach 1 */
+        assert_true(sum / count < 0.004); /* slopes reach 1 */
     }
     arena_destroy(arena);
     (void)unused;

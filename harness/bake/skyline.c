@@ -15,10 +15,15 @@ struct sweep {
     float step_m;   /* level distance of a step along */
 };
 
+/* Points of a line, from far to near: all that were passed, or the upper hull of some. */
 struct hull {
-    float *at_m, *height_m; /* from far to near */
+    float *at_m, *height_m;
     int count;
 };
+
+/* What is this many steps ahead, or nearer, each sample looks at itself: a line beside it would
+ * show it other slopes. */
+static const int near_steps = 4;
 
 static struct sweep sweep_of(const struct terrain *terrain, double azimuth_rad)
 {
@@ -51,24 +56,38 @@ static float height_at(const struct sweep *sweep, double along, double across)
                           : base + v * (by_across - base) + u * (corner - by_across));
 }
 
-/* The tangent from a point before the hull; the hull loses what the point hides from all after. */
-static float hull_look(struct hull *hull, float at_m, float height_m)
+/* A point joins, nearer than all before; those that it hides from all after leave. */
+static void hull_add(struct hull *hull, float at_m, float height_m)
 {
-    float best = SKYLINE_OPEN;
-    if (hull->count)
-        best = (hull->height_m[hull->count - 1] - height_m) /
-               fabsf(hull->at_m[hull->count - 1] - at_m);
     while (hull->count > 1) {
-        int next = hull->count - 2;
-        float slope = (hull->height_m[next] - height_m) / fabsf(hull->at_m[next] - at_m);
-        if (slope < best)
+        const float *at = hull->at_m + hull->count - 2, *height = hull->height_m + hull->count - 2;
+        if ((height[1] - height_m) * (at_m - at[0]) > (height[0] - height_m) * (at_m - at[1]))
             break;
-        best = slope;
         hull->count--;
     }
     hull->at_m[hull->count] = at_m;
     hull->height_m[hull->count++] = height_m;
-    return best;
+}
+
+static float hull_slope(const struct hull *hull, int point, float at_m, float height_m)
+{
+    return (hull->height_m[point] - height_m) / (at_m - hull->at_m[point]);
+}
+
+/* The tangent from a point before the hull, at any height: slopes rise and then fall along it. */
+static float hull_look(const struct hull *hull, float at_m, float height_m)
+{
+    int low = 0, high = hull->count - 1;
+    if (high < 0)
+        return SKYLINE_OPEN;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (hull_slope(hull, middle, at_m, height_m) < hull_slope(hull, middle + 1, at_m, height_m))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return hull_slope(hull, low, at_m, height_m);
 }
 
 /* Where a value that runs evenly from one to another is whole, as shares of the way, excluding its
@@ -85,9 +104,15 @@ static int whole_shares(double from, double to, double *shares)
     return count;
 }
 
+static void line_add(struct hull *line, double at_m, float height_m)
+{
+    line->at_m[line->count] = (float)at_m;
+    line->height_m[line->count++] = height_m;
+}
+
 /* The surface bends where the line passes from triangle to triangle: what is between two columns.
  */
-static void look_between(const struct sweep *sweep, int column, double across, struct hull *hull,
+static void pass_between(const struct sweep *sweep, int column, double across, struct hull *line,
                          int step)
 {
     double shares[6], back = sweep->ascending ? 1 : -1;
@@ -103,8 +128,8 @@ static void look_between(const struct sweep *sweep, int column, double across, s
     for (int i = 0; i < count; i++) {
         double along = column + back * (1 - shares[i]), at = from + shares[i] * (across - from);
         if (i == 0 || shares[i] > shares[i - 1] + 1e-9)
-            hull_look(hull, (float)((step - 1 + shares[i]) * (double)sweep->step_m),
-                      height_at(sweep, along, at));
+            line_add(line, (step - 1 + shares[i]) * (double)sweep->step_m,
+                     height_at(sweep, along, at));
     }
 }
 
@@ -115,40 +140,80 @@ static double snap(double across)
     return fabs(across - whole) < 1e-6 ? whole : across;
 }
 
-/* One line, from its far end: gives its horizon to the samples on both sides. first: where it would
- * cross column 0. */
-static void sweep_line(const struct sweep *sweep, double first, struct hull *hull)
+static float *tangent_at(const struct sweep *sweep, int column, int row)
+{
+    return sweep->tangents + (size_t)column * sweep->stride_along +
+           (size_t)row * sweep->stride_across;
+}
+
+/* One line, from its far end: gives its far horizon to the samples on both sides, as each sees it
+ * from its own height. first: where it would cross column 0. line, hull: room for a line. */
+static void sweep_line(const struct sweep *sweep, double first, struct hull *line,
+                       struct hull *hull)
 {
     const int last = sweep->across - 1;
-    hull->count = 0;
+    int added = 0; /* to the hull */
+    line->count = hull->count = 0;
     for (int step = 0; step < sweep->along; step++) {
         int column = sweep->ascending ? sweep->along - 1 - step : step;
         double across = snap(first + sweep->slope * column);
         if (across < 0 || across > last)
             continue;
-        if (hull->count)
-            look_between(sweep, column, across, hull, step);
-        float tangent =
-            hull_look(hull, (float)step * sweep->step_m, height_at(sweep, column, across));
+        if (line->count)
+            pass_between(sweep, column, across, line, step);
+        line_add(line, step * (double)sweep->step_m, height_at(sweep, column, across));
+        float at_m = (float)step * sweep->step_m,
+              far_m = ((float)near_steps - 0.001f) * sweep->step_m;
+        for (; added < line->count && line->at_m[added] <= at_m - far_m; added++)
+            hull_add(hull, line->at_m[added], line->height_m[added]);
         int low = (int)across;
         double share = across - low;
-        float *at = sweep->tangents + (size_t)column * sweep->stride_along;
-        /* at a border there is no line on the other side */
-        at[(size_t)low * sweep->stride_across] += (float)(low > 0 ? 1 - share : 1) * tangent;
-        if (share > 0)
-            at[(size_t)(low + 1) * sweep->stride_across] +=
-                (float)(low + 1 < last ? share : 1) * tangent;
+        for (int row = low; row <= low + (share > 0); row++) {
+            /* at a border there is no line on the other side */
+            bool alone = row == low ? low == 0 : row == last;
+            double weight = alone ? 1 : row == low ? 1 - share : share;
+            *tangent_at(sweep, column, row) +=
+                (float)weight * hull_look(hull, at_m, height_at(sweep, column, row));
+        }
     }
+}
+
+/* The steepest way from a sample over the edges of the next triangles. */
+static float look_near(const struct sweep *sweep, int column, int row)
+{
+    double direction = sweep->ascending ? 1 : -1, best = (double)SKYLINE_OPEN;
+    const double rates[3] = {1, fabs(sweep->slope), fabs(1 - sweep->slope)};
+    float height_m = height_at(sweep, column, row);
+    for (int family = 0; family < 3; family++)
+        for (int k = 1; k <= near_steps * rates[family]; k++) {
+            double steps = k / rates[family], along = column + direction * steps,
+                   across = row + direction * steps * sweep->slope;
+            if (along < 0 || across < 0 || along > sweep->along - 1 || across > sweep->across - 1)
+                break;
+            best = fmax(best, (double)(height_at(sweep, along, across) - height_m) /
+                                  (steps * (double)sweep->step_m));
+        }
+    return (float)best;
+}
+
+static struct hull hull_room(struct arena *arena, const struct sweep *sweep)
+{
+    size_t points = 4 * (size_t)sweep->along;
+    return (struct hull){.at_m = ARENA_ARRAY(arena, float, points),
+                         .height_m = ARENA_ARRAY(arena, float, points)};
 }
 
 static void sweep_run(const struct sweep *sweep)
 {
     struct arena *passing = arena_create(0);
-    struct hull hull = {.at_m = ARENA_ARRAY(passing, float, 4 * (size_t)sweep->along),
-                        .height_m = ARENA_ARRAY(passing, float, 4 * (size_t)sweep->along)};
+    struct hull line = hull_room(passing, sweep), hull = hull_room(passing, sweep);
     double lean = sweep->slope * (sweep->along - 1);
     for (double first = floor(fmin(0, -lean)) - 1; first <= sweep->across + fmax(0, -lean); first++)
-        sweep_line(sweep, first, &hull);
+        sweep_line(sweep, first, &line, &hull);
+    for (int column = 0; column < sweep->along; column++)
+        for (int row = 0; row < sweep->across; row++)
+            *tangent_at(sweep, column, row) =
+                fmaxf(*tangent_at(sweep, column, row), look_near(sweep, column, row));
     arena_destroy(passing);
 }
 

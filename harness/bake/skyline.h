@@ -20,8 +20,8 @@ struct skyline {
  * line's next point looks along its tangent (as Timonen and Westerholm 2010, doi:10.1111/
  * j.1467-8659.2009.01642.x): time and memory are linear in the samples. Stewart 1998
  * (doi:10.1109/2945.675656) keeps such hulls in sectors. A line passes between two samples of each
- * column or row; the sample takes its horizon from the two lines beside it, by their distances.
- * threads: more than one azimuth at once. */
+ * column or row; the sample takes its far horizon from the two lines beside it, by their distances,
+ * and looks at the next triangles itself. threads: more than one azimuth at once. */
 void skyline_bake(struct arena *arena, const struct terrain *terrain, int azimuths, int threads,
                   struct skyline *skyline);
 
