@@ -54,7 +54,7 @@ GLuint impostor_trees(struct gl *gl, const struct scene *scene)
     return buffer;
 }
 
-static GLuint upload_stretches(struct gl *gl, const struct scene *scene)
+GLuint impostor_stretches(struct gl *gl, const struct scene *scene)
 {
     struct arena *scratch = arena_create(0);
     float *stretches = ARENA_ARRAY(scratch, float, scene->instances_count + 1);
@@ -141,7 +141,7 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
     impostor->fans_hull = impostor->fans_quad < HULLS_MOST ? impostor->fans_quad : HULLS_MOST;
     impostor->instances_buffer = impostor_trees(gl, tall);
     if (tall != scene)
-        impostor->stretches_buffer = upload_stretches(gl, tall);
+        impostor->stretches_buffer = impostor_stretches(gl, tall);
     impostor->order_buffer =
         gl_buffer(gl, (GLsizeiptr)((count + 1) * sizeof(uint32_t)), NULL, GL_DYNAMIC_STORAGE_BIT);
     size_t lights = (size_t)impostor->atlas->layers * IMPOSTOR_SUN_STEPS;

@@ -62,6 +62,8 @@ enum status impostor_prepare(struct workspace *workspace, const struct scene *sc
 const char *impostor_source(struct arena *arena, const char *source);
 /* The scene's trees as impostor.glsl reads them: a buffer. */
 GLuint impostor_trees(struct gl *gl, const struct scene *scene);
+/* Their stretches, as it reads them with STRETCHED: a buffer. */
+GLuint impostor_stretches(struct gl *gl, const struct scene *scene);
 
 /* Links impostor.glsl and a method's own source; defines may be NULL. Adds ALPHA_TEST,
  * ALPHA_COVERAGE, DEPTH, PICTURE_DEPTH, FOG and what receives shadows. */

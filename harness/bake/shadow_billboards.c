@@ -13,24 +13,22 @@ struct shadow_billboards {
     uint32_t *order;    /* of a pass: those that may cast */
     GLuint programs[2]; /* depths, coverage */
     GLuint vertices, trees_buffer, order_buffer;
+    GLuint stretches_buffer; /* 0: no tree is stretched */
 };
 
 static enum status prepare_programs(struct workspace *workspace,
                                     const struct shadow_options *options,
                                     struct shadow_billboards *billboards)
 {
-    int layers = shadow_layers(options);
+    struct arena *scratch = arena_create(0);
     enum status status = STATUS_OK;
-    for (int covers = 0; covers <= (layers > 0) && status == STATUS_OK; covers++) {
-        struct arena *scratch = arena_create(0);
-        const char *defines =
-            arena_printf(scratch, "CAST 1\nVIEWS 1\nLAYOUT %d\n%s", VIEWS_HEMISPHERE,
-                         covers ? arena_printf(scratch, "LAYERS %d\n", layers) : "");
-        status = gl_program(workspace->gl, "shadow billboards",
-                            impostor_source(scratch, shadow_billboards_glsl), defines,
-                            &billboards->programs[covers], workspace->error);
-        arena_destroy(scratch);
-    }
+    const char *source = impostor_source(scratch, shadow_billboards_glsl);
+    const char *defines = arena_printf(scratch, "CAST 1\nVIEWS 1\nLAYOUT %d\n%s", VIEWS_HEMISPHERE,
+                                       billboards->stretches_buffer ? "STRETCHED 1\n" : "");
+    for (int covers = 0; covers <= (shadow_layers(options) > 0) && status == STATUS_OK; covers++)
+        status = shadow_cast_program(workspace, options, covers, source, defines,
+                                     &billboards->programs[covers]);
+    arena_destroy(scratch);
     return status;
 }
 
@@ -49,8 +47,7 @@ enum status shadow_billboards_prepare(struct workspace *workspace, const struct 
                                           .depth = true};
     billboards->scene = scene;
     if (scene_is_stretched(scene))
-        return error_set(workspace->error, STATUS_UNSUPPORTED,
-                         "casters: billboard; allowed where trees are stretched: exact, low");
+        billboards->stretches_buffer = impostor_stretches(gl, scene);
     enum status status = atlas_build(workspace, scene, &request, &billboards->atlas);
     if (status == STATUS_OK)
         status = prepare_programs(workspace, options, billboards);
@@ -73,10 +70,11 @@ static size_t list_casters(const struct shadow_billboards *billboards, const str
     for (size_t i = 0; i < scene->instances_count; i++) {
         const struct instance *tree = &scene->instances[i];
         const struct atlas_species *species = &billboards->atlas->species[tree->species];
-        double center_m[3] = {(double)tree->position_m[0],
-                              (double)(tree->position_m[1] + species->center_y_m * tree->scale),
-                              (double)tree->position_m[2]};
-        if (shadow_fit_meets(fit, center_m, (double)(species->radius_m * tree->scale)))
+        double center_m[3] = {
+            (double)tree->position_m[0],
+            (double)(tree->position_m[1] + species->center_y_m * tree->scale * tree->stretch),
+            (double)tree->position_m[2]};
+        if (shadow_fit_meets(fit, center_m, (double)(species->radius_m * instance_reach(tree))))
             billboards->order[count++] = (uint32_t)i;
     }
     return count;
@@ -87,8 +85,13 @@ void shadow_billboards_cast(struct workspace *workspace, const struct shadow_bil
 {
     struct gl *gl = workspace->gl;
     const struct atlas *atlas = billboards->atlas;
-    const GLuint buffers[4] = {billboards->trees_buffer, billboards->order_buffer,
-                               atlas->views_buffer, atlas->species_buffer};
+    /* of impostor.glsl's bindings; what casts has no light */
+    const GLuint buffers[6] = {billboards->trees_buffer,
+                               billboards->order_buffer,
+                               atlas->views_buffer,
+                               atlas->species_buffer,
+                               0,
+                               billboards->stretches_buffer};
     GLuint program = billboards->programs[pass->covers];
     size_t count = list_casters(billboards, pass->fit);
     if (count == 0)
@@ -97,7 +100,7 @@ void shadow_billboards_cast(struct workspace *workspace, const struct shadow_bil
                            (GLsizeiptr)(count * sizeof *billboards->order), billboards->order);
     shadow_pass_use(workspace, pass, program);
     gl->BindVertexArray(billboards->vertices);
-    for (GLuint i = 0; i < 4; i++)
+    for (GLuint i = 0; i < 6; i++)
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
     gl->BindTextureUnit(0, atlas->albedo);
     gl->BindTextureUnit(2, atlas->depth);
@@ -109,6 +112,6 @@ void shadow_billboards_cast(struct workspace *workspace, const struct shadow_bil
                   (float)fmax(pass->fit->texel_m[0], pass->fit->texel_m[1]));
     gl->Uniform1i(gl_uniform(gl, program, "last_level"), atlas->levels - 1);
     gl_draw_arrays(gl, GL_TRIANGLES, 0, (GLsizei)(6 * count), 1);
-    for (GLuint i = 0; i < 4; i++)
+    for (GLuint i = 0; i < 6; i++)
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
 }

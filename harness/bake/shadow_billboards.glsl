@@ -1,5 +1,5 @@
-// Trees that cast into a shadow map: quads that face the sun, behind impostor.glsl with CAST. LAYERS: as of
-// shadow_cast.glsl.
+// Trees that cast into a shadow map: quads that face the sun, behind impostor.glsl with CAST, and shadow_cover.glsl. The
+// sun's rays are parallel: stretched with its tree, a picture from along a ray still is one.
 uniform mat4 light;
 uniform float texel_m;  // of the map
 
@@ -12,7 +12,7 @@ flat out vec3 toward_m;   // the sun, as far as the pictures' depths reach
 void main()
 {
     int number = int(order[gl_VertexID / 6]), corner = int[6](0, 1, 2, 0, 2, 3)[gl_VertexID % 6];
-    tree t = trees[number];
+    tree t = tree_at(number);
     plant p = plants[int(t.turn.z)];
     vec3 v = to_tree(sun_direction, t);
     v.y = max(v.y, 0.0);
@@ -28,8 +28,9 @@ void main()
     vec2 st = corner_of(pic.bounds.xy - margin, pic.bounds.zw + margin, corner);
     picture_place = (st - vec2(pic.right_s.w, pic.up_t.w)) / (p.shape.z * layer_px);
     layer_level = vec3(float(index), level, 0.0);
-    plane_m = center_of(t, p) + t.place.w * rotate_y(st.x * right + st.y * up, t.turn.x, t.turn.y);
-    toward_m = t.place.w * p.shape.y * rotate_y(v, t.turn.x, t.turn.y);
+    vec3 tall = vec3(1.0, stretch, 1.0);
+    plane_m = center_of(t, p) + t.place.w * rotate_y(tall * (st.x * right + st.y * up), t.turn.x, t.turn.y);
+    toward_m = t.place.w * p.shape.y * rotate_y(tall * v, t.turn.x, t.turn.y);
     gl_Position = light * vec4(plane_m, 1.0);
 }
 
@@ -43,12 +44,6 @@ in vec2 picture_place;
 in vec3 plane_m;
 #endif
 flat in vec3 toward_m;
-#ifdef LAYERS
-layout(location = 0) out vec4 covered;
-layout(binding = 5) uniform sampler2DArray first;
-uniform int layer;
-uniform float layer_depth;  // of a layer, in units of depth
-#endif
 
 void main()
 {
@@ -58,11 +53,7 @@ void main()
     vec4 clip = light * vec4(plane_m + toward_m * (2.0 * textureLod(depth_map, at, layer_level.y).r - 1.0), 1.0);
     float depth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 1.0);
 #ifdef LAYERS
-    float behind = depth - texelFetch(first, ivec3(gl_FragCoord.xy, layer), 0).r;
-    covered = vec4(lessThanEqual(vec4(behind), layer_depth * vec4(1.0, 2.0, 3.0, 4.0)));
-#if LAYERS == 1
-    covered = vec4(1.0);
-#endif
+    cover(depth);
 #else
     gl_FragDepth = depth;
 #endif

@@ -8,8 +8,7 @@
 
 struct shadow_billboards;
 
-/* Bakes the pictures of the scene's plants. STATUS_UNSUPPORTED where trees are stretched: their
- * pictures would be others. */
+/* Bakes the pictures of the scene's plants. */
 enum status shadow_billboards_prepare(struct workspace *workspace, const struct scene *scene,
                                       const struct shadow_options *options,
                                       struct shadow_billboards **billboards);

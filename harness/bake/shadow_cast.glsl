@@ -1,5 +1,5 @@
-// What casts into a shadow map. TERRAIN: the ground; else triangles of plants, instanced. PRUNED, TEXTURED: as of
-// triangles.glsl. LAYERS: beside the depth, to which depths behind the map's first one a sample is covered.
+// What casts into a shadow map, with shadow_cover.glsl. TERRAIN: the ground; else triangles of plants, instanced.
+// PRUNED, TEXTURED: as of triangles.glsl.
 #pragma stage vertex
 layout(location = 0) in vec3 position;
 uniform mat4 light;
@@ -44,12 +44,6 @@ void main()
 in vec2 texture_uv;
 layout(binding = 0) uniform sampler2D picture;
 #endif
-#ifdef LAYERS
-layout(location = 0) out vec4 covered;
-layout(binding = 5) uniform sampler2DArray first;
-uniform int layer;
-uniform float layer_depth;  // of a layer, in units of depth
-#endif
 
 void main()
 {
@@ -58,10 +52,6 @@ void main()
         discard;
 #endif
 #ifdef LAYERS
-    float behind = gl_FragCoord.z - texelFetch(first, ivec3(gl_FragCoord.xy, layer), 0).r;
-    covered = vec4(lessThanEqual(vec4(behind), layer_depth * vec4(1.0, 2.0, 3.0, 4.0)));
-#if LAYERS == 1
-    covered = vec4(1.0);
-#endif
+    cover(gl_FragCoord.z);
 #endif
 }

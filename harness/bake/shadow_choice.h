@@ -46,8 +46,8 @@ struct sun_shadows_request shadow_choice_request(const struct shadow_choice *cho
 
 struct sun_shadows;
 
-/* The map and what casts; the ground receives from now on. STATUS_UNSUPPORTED: pictures of trees
- * that are stretched, ground that is drawn by levels of detail. */
+/* The map and what casts; the ground receives from now on. STATUS_UNSUPPORTED: ground that
+ * is drawn by levels of detail. */
 enum status sun_shadows_prepare(struct workspace *workspace, const struct scene *scene,
                                 const struct sun_shadows_request *request,
                                 struct backdrop *backdrop, struct sun_shadows **shadows);

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 
 #include "shadow_cast.glsl.h"
+#include "shadow_cover.glsl.h"
 #include "shadow_map.glsl.h"
 
 #include <string.h>
@@ -58,18 +59,32 @@ int shadow_layers(const struct shadow_options *options)
     return options->foliage == SHADOW_SOLID ? 0 : options->foliage == SHADOW_ALPHA ? 1 : 4;
 }
 
+enum status shadow_cast_program(struct workspace *workspace, const struct shadow_options *options,
+                                bool covers, const char *source, const char *defines,
+                                GLuint *program)
+{
+    static const char stage[] = "#pragma stage fragment\n";
+    struct arena *scratch = arena_create(0);
+    const char *body = strstr(source, stage) + sizeof stage - 1;
+    const char *text =
+        arena_printf(scratch, "%.*s%s%s", (int)(body - source), source, shadow_cover_glsl, body);
+    const char *layers = covers ? arena_printf(scratch, "LAYERS %d\n", shadow_layers(options)) : "";
+    enum status status =
+        gl_program(workspace->gl, "shadow caster", text,
+                   arena_printf(scratch, "%s%s", layers, defines), program, workspace->error);
+    arena_destroy(scratch);
+    return status;
+}
+
 static enum status prepare_programs(struct workspace *workspace, struct shadow_map *map)
 {
     static const char *const variants[SHADOW_CASTS] = {"TERRAIN 1\n", "", "TEXTURED 1\n",
                                                        "PRUNED 1\n"};
     for (int covers = 0; covers < (map->layers ? 2 : 1); covers++)
         for (int v = 0; v < SHADOW_CASTS; v++) {
-            const char *layers =
-                covers ? arena_printf(workspace->arena, "LAYERS %d\n", shadow_layers(&map->options))
-                       : "";
-            const char *defines = arena_printf(workspace->arena, "%s%s", variants[v], layers);
-            enum status status = gl_program(workspace->gl, "shadow caster", shadow_cast_glsl,
-                                            defines, &map->programs[covers][v], workspace->error);
+            enum status status =
+                shadow_cast_program(workspace, &map->options, covers, shadow_cast_glsl, variants[v],
+                                    &map->programs[covers][v]);
             if (status)
                 return status;
         }

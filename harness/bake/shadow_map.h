@@ -83,6 +83,11 @@ struct shadow_pass {
     float sun[3]; /* unit, toward it */
     float per_m;  /* tolerances a metre of a caster; 0: every triangle */
 };
+/* What draws casters: gl_program() with shadow_cover.glsl at the head of the fragment stage; LAYERS
+ * where it is to say what it covers. */
+enum status shadow_cast_program(struct workspace *workspace, const struct shadow_options *options,
+                                bool covers, const char *source, const char *defines,
+                                GLuint *program);
 enum {
     SHADOW_CAST_TERRAIN,
     SHADOW_CAST_PLAIN,
