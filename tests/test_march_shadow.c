@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "march_world.h"
+#include "shadow_world.h"
 
 #include "bake/march_shadow_parts.h"
 
@@ -234,36 +235,6 @@ static void test_march_shadow__a_ridge_shades_as_far_as_the_sun_is_low(void **st
     arena_destroy(arena);
 }
 
-static void ground_add(struct world *world)
-{
-    struct terrain *terrain = &world->scene.terrain;
-    terrain->samples_x = terrain->samples_z = 2;
-    terrain->size_x_m = terrain->size_z_m = 200;
-    terrain->heights_m = ARENA_ARRAY(world->arena, float, 4);
-    terrain->normals = arena_alloc(world->arena, 4, sizeof *terrain->normals);
-    for (int i = 0; i < 4; i++)
-        terrain->normals[i][1] = 1;
-    for (int i = 0; i < 3; i++)
-        terrain->albedo[i] = 0.4f;
-}
-
-/* RMS difference of two pictures, over 8 x 8 pixels. */
-static double apart(const struct frame *a, const struct frame *b)
-{
-    double sum = 0;
-    int count = 0;
-    for (int y = 0; y + 8 <= a->height_px; y += 8)
-        for (int x = 0; x + 8 <= a->width_px; x += 8, count++) {
-            double difference = 0;
-            for (int i = 0; i < 64; i++) {
-                size_t at = 4 * ((size_t)(y + i / 8) * (size_t)a->width_px + (size_t)(x + i % 8));
-                difference += ((double)a->rgba[at + 1] - (double)b->rgba[at + 1]) / 64;
-            }
-            sum += difference * difference;
-        }
-    return sqrt(sum / count);
-}
-
 static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
 
 /* The same trees with shadows and without. */
@@ -281,8 +252,8 @@ static struct both both_ready(struct world *world)
 static void shadows_check(struct world *world, const struct both *both, const char *name)
 {
     const struct frame *shaded = traced(world, lit | EFFECT_SUN_SHADOWS);
-    double error = apart(ready_picture(world, both->shaded), shaded);
-    double ignored = apart(ready_picture(world, both->plain), shaded);
+    double error = boxes_apart(ready_picture(world, both->shaded), shaded);
+    double ignored = boxes_apart(ready_picture(world, both->plain), shaded);
     if (!(error < 0.2 * ignored))
         fail_msg("%s: error %g, without shadows %g", name, error, ignored);
 }
@@ -292,7 +263,7 @@ static void test_march_shadow__pictures_are_as_traced_from_low_sun_to_zenith(voi
     (void)state;
     static const float elevations_deg[] = {6, 45, 90};
     struct world world = world_of_balls(2, 3000, 0.25);
-    ground_add(&world);
+    ground_level(world.arena, &world.scene.terrain);
     struct both both = both_ready(&world);
     for (size_t i = 0; i < sizeof elevations_deg / sizeof *elevations_deg; i++) {
         char name[32];
@@ -330,7 +301,7 @@ static struct world world_of_forest(float apart_m)
         mesh->positions[i][0] += 3;
     mesh_bounds(mesh);
     scene->species[0].plant = plant_from_mesh(world.arena, "beside", mesh);
-    ground_add(&world);
+    ground_level(world.arena, &world.scene.terrain);
     for (scene->instances_count = 0; scene->instances_count < 40; scene->instances_count++) {
         struct instance *tree = &scene->instances[scene->instances_count];
         *tree = scene->instances[0];
@@ -405,7 +376,7 @@ static void test_march_shadow__a_sun_below_the_ground_gives_no_light(void **stat
 {
     (void)state;
     struct world world = world_of_balls(3, 2000, 0.25);
-    ground_add(&world);
+    ground_level(world.arena, &world.scene.terrain);
     world_sun(&world, 0.6, -0.4, 0.3);
     struct ready *ready = march_ready(&world, &usual, lit | EFFECT_SUN_SHADOWS, 2);
     const struct frame *low = ready_picture(&world, ready);
@@ -421,7 +392,7 @@ static void test_march_shadow__threads_and_instruction_sets_change_no_byte(void 
     const unsigned effects = EFFECT_TWO_SIDED | EFFECT_SUN_SHADOWS;
     static const char *const names[] = {"plain", "avx2", "avx512"};
     struct world world = world_of_balls(3, 2000, 0.25);
-    ground_add(&world);
+    ground_level(world.arena, &world.scene.terrain);
     const struct frame *first = march_picture(&world, &usual, effects, 1);
     for (int i = 0; i < 3; i++) {
         struct march_options options = usual;

@@ -1,6 +1,6 @@
 /* Shadow maps: splits, slices, biases and still texels against closed forms and brute force; masks
  * against the traced ones; settings at both ends. */
-#include "testing.h"
+#include "shadow_world.h"
 
 #include "bake/shadow_math.h"
 #include "base/random.h"
@@ -198,43 +198,15 @@ static void test_shadow_map__the_bias_of_the_closed_form_is_enough_and_none_less
         }
 }
 
-static struct result_view masked(const char *cell, size_t views)
-{
-    struct arena *arena = arena_create(0);
-    struct plan *plan = NULL;
-    struct error error = {0};
-    struct plan_request request = {.cells = &cell,
-                                   .cells_count = 1,
-                                   .rounds = 1,
-                                   .frame_seconds = 0.01,
-                                   .frames_max = 1,
-                                   .timeout_seconds = 100,
-                                   .reference_error = 0.02,
-                                   .reference_samples_max = 16,
-                                   .views_count = (int)views};
-    struct result result;
-    if (plan_load(arena, &request, &plan, &error))
-        fail_msg("%s", error.text);
-    if (cell_run(arena, plan, plan->cells, 0, NULL, &result))
-        fail_msg("%s: %s", cell, result.message);
-    assert_true(result.views_count == views && result.views[0].masked);
-    struct result_view view = result.views[0];
-    assert_true(result.shadow_bytes > 0 && result.shadow_seconds > 0);
-    arena_destroy(arena);
-    return view;
-}
-
 #define STAIRS "/trees=1/size=64x48"
 
 static void test_shadow_map__a_closed_mesh_has_no_acne_with_bias_and_much_without(void **state)
 {
     (void)state;
-    struct mask_error right =
-        masked("stairs/shadow-map:size=256,linear=off,reach_m=40" STAIRS, 1).mask;
-    struct mask_error none =
-        masked("stairs/shadow-map:bias=none,size=256,linear=off,reach_m=40" STAIRS, 1).mask;
-    struct mask_error much =
-        masked("stairs/shadow-map:bias_scale=60,size=256,linear=off,reach_m=40" STAIRS, 1).mask;
+    struct mask_error right, none, much;
+    cell_masks("stairs/shadow-map:size=256,linear=off,reach_m=40" STAIRS, 1, &right);
+    cell_masks("stairs/shadow-map:bias=none,size=256,linear=off,reach_m=40" STAIRS, 1, &none);
+    cell_masks("stairs/shadow-map:bias_scale=60,size=256,linear=off,reach_m=40" STAIRS, 1, &much);
     if (!(right.judged > 0.95 && right.wrong < 0.03 && right.stray < 0.01))
         fail_msg("wrong %g, leak %g, acne %g, stray %g, judged %g", right.wrong, right.leak,
                  right.acne, right.stray, right.judged);

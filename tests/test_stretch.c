@@ -1,6 +1,7 @@
 /* Trees that are higher or lower than their plants: balls become ellipsoids, whose normals and
  * light are known in closed form. */
 #include "pictures.h"
+#include "shadow_world.h"
 #include "slices_meshes.h"
 
 enum { SIDE_PX = 64 };
@@ -213,20 +214,12 @@ static void test_ray_texels__the_shadow_of_a_stretched_tree_is_as_traced(void **
         struct arena *arena = arena_create(0);
         struct plant *plant = plant_from_mesh(arena, "lopsided", tree_mesh(arena, 400));
         struct scene *scene = tree_scene(arena, plant, 1, 0.4f);
-        struct terrain *terrain = &scene->terrain;
         double boxes[2][BOXES * BOXES], wanted = 0, has = 0, off = 0;
         const float *frames[2][2];
         scene->instances[0].rotation_rad = 1;
         scene->instances[0].stretch = stretches[k];
         scene->tree_reach_m = 16;
-        terrain->samples_x = terrain->samples_z = 2;
-        terrain->size_x_m = terrain->size_z_m = 200;
-        terrain->heights_m = ARENA_ARRAY(arena, float, 4);
-        terrain->normals = arena_alloc(arena, 4, sizeof *terrain->normals);
-        for (int i = 0; i < 4; i++)
-            terrain->normals[i][1] = 1;
-        for (int i = 0; i < 3; i++)
-            terrain->albedo[i] = 0.4f;
+        ground_level(arena, &scene->terrain);
         struct view view = tree_view(scene, 1.5f, 0.7f, 100, 34);
         for (int shaded = 0; shaded < 2; shaded++) {
             unsigned effects = EFFECT_TWO_SIDED | (shaded ? EFFECT_SUN_SHADOWS : 0);
