@@ -173,6 +173,7 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
         [FIGURE_MASKS] = "Bars: across, from the best view to the worst; up, 95 % intervals. To "
                          "the left and below is better.",
         [FIGURE_MASKS_DISTANCE] = "One point a view; mask against rays.",
+        [FIGURE_PAIRS] = "Open: without the sun's shadows; filled: with them.",
         [FIGURE_GROWTH] = ("Bars: 95 % intervals. Lines: a power law fitted to three or more tree "
                            "counts; N^(\u22121) means that twice the trees take twice the time."),
         [FIGURE_DISTANCE] = "One point a view; error of the representation.",
@@ -199,7 +200,7 @@ size_t page_figures(const struct page *page, enum figure_kind first, enum figure
         if (!shown++)
             fprintf(page->out, "<div%s><div class=\"figures%s\">\n",
                     figure->kind >= FIGURE_ROOFLINE || figure->kind == FIGURE_PACE ||
-                            figure->kind == FIGURE_MASKS || figure->kind == FIGURE_MASKS_DISTANCE
+                            (figure->kind >= FIGURE_MASKS && figure->kind <= FIGURE_PAIRS)
                         ? ""
                         : " class=\"still\"",
                     figure->kind == FIGURE_SWEEP ? " three" : "");
@@ -346,6 +347,7 @@ static void put_page(const struct page *page)
     page_live(page, "live-controls");
     put_trade(page);
     put_masks(page);
+    page_pairs(page);
     put_growth_and_distance(page);
     put_angles(page);
     put_options(page);

@@ -35,6 +35,9 @@ void page_tracings(const struct page *page); /* the references' share of it; a p
  * table has a cell of the run. */
 void page_papers(const struct page *page);
 
+/* Methods without and with the sun's shadows; nothing where the run has no such pair. */
+void page_pairs(const struct page *page);
+
 /* The error maps of the shaders of needles, OUT/plots/shaders.png; nothing where no cell draws with
  * them. */
 void page_shaders(const struct page *page);

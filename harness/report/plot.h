@@ -65,6 +65,9 @@ enum status plot_masks(const struct book *book, const struct group *group, const
                        struct figure *figure, struct error *error);
 enum status plot_masks_distance(const struct book *book, const struct group *group,
                                 const char *folder, struct figure *figure, struct error *error);
+/* Total error and frame time of a group's methods without and with the sun's shadows. */
+enum status plot_pairs(const struct book *book, const struct group *group, const char *folder,
+                       struct figure *figure, struct error *error);
 /* The curve of a row through the points of a block of the data, with its label in the key. */
 void plot_row_line(struct plot *plot, const struct row *row, int block);
 /* Cells of a group under the machine's roof: frames a second of all of them; triangles a second
@@ -87,9 +90,9 @@ enum status plot_paper(const struct book *book, const struct paper_beside *besid
 /* Times of a table that seeks a law, printed and ours over their base rows, and the laws. */
 enum status plot_law(const struct book *book, const struct paper_beside *beside, size_t table,
                      const char *folder, struct figure *figure, struct error *error);
-/* Error, frame time or memory against a swept option. */
+/* Error, frame time, memory or wrong shadows against a swept option. */
 struct sweep;
-enum sweep_axis { SWEEP_ERROR, SWEEP_TIME, SWEEP_MEMORY };
+enum sweep_axis { SWEEP_ERROR, SWEEP_TIME, SWEEP_MEMORY, SWEEP_MASK, SWEEP_AXES };
 enum status plot_sweep(const struct book *book, const struct sweep *sweep, enum sweep_axis axis,
                        const char *folder, struct figure *figure, struct error *error);
 /* Error against memory, of a group. */

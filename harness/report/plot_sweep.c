@@ -1,5 +1,5 @@
-/* The static plots of a swept option: error, frame time and memory against its value; and of error
- * against memory. */
+/* The static plots of a swept option: error, frame time, memory and wrong shadows against its
+ * value; and of error against memory. */
 #include "report/plot.h"
 #include "report/sweep.h"
 
@@ -25,6 +25,8 @@ static struct interval figure_of(const struct row *row, enum sweep_axis axis)
                                  1e3 * row->values[COLUMN_frame_seconds_high]};
     if (axis == SWEEP_MEMORY)
         value = memory_megabytes(row);
+    if (axis == SWEEP_MASK)
+        value = 100 * row->values[COLUMN_mask_wrong];
     return (struct interval){value, value, value};
 }
 
@@ -73,9 +75,12 @@ enum status plot_sweep(const struct book *book, const struct sweep *sweep, enum 
         [SWEEP_ERROR] = "FLIP, reference with same effects",
         [SWEEP_TIME] = "frame time [ms]",
         [SWEEP_MEMORY] = "memory and GL objects [MB]",
+        [SWEEP_MASK] = "surface in wrong shadow [%]",
     };
-    static const char *const words[] = {
-        [SWEEP_ERROR] = "error", [SWEEP_TIME] = "time", [SWEEP_MEMORY] = "memory"};
+    static const char *const words[] = {[SWEEP_ERROR] = "error",
+                                        [SWEEP_TIME] = "time",
+                                        [SWEEP_MEMORY] = "memory",
+                                        [SWEEP_MASK] = "shadow"};
     const struct group *group = &book->groups[sweep->group];
     struct axis x = axis_empty(), y = axis_empty();
     for (size_t c = 0; c < sweep->curves_count; c++)

@@ -7,9 +7,9 @@
 
 enum {
     FAMILIES_MAX = 6,
-    KINDS_COUNT = 9 + ROOFLINES_COUNT,
-    SWEEPS_MAX = 6,
-    SWEEP_AXES = SWEEP_MEMORY + 1
+    KINDS_COUNT = 8 + ROOFLINES_COUNT,
+    SHADOWS_MAX = 24, /* of all groups */
+    SWEEPS_MAX = 6
 };
 
 /* Keeps the figure if something was drawn. */
@@ -27,9 +27,6 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
         status = plot_trade(book, group, full, folder, &figures->list[figures->count], error);
         keep(figures);
     }
-    if (status == STATUS_OK)
-        status = plot_masks(book, group, folder, &figures->list[figures->count], error);
-    keep(figures);
     if (status == STATUS_OK)
         status = plot_masks_distance(book, group, folder, &figures->list[figures->count], error);
     keep(figures);
@@ -52,8 +49,28 @@ static enum status plan_group(const struct book *book, size_t g, const char *fol
     return status;
 }
 
-/* Error, time and memory against the options that are swept; error against memory of the group that
- * the headline speaks about. */
+/* Of every group, since what casts is what differs between those of a family: wrong shadows against
+ * their price; errors without and with shadows. */
+static enum status plan_shadows(const struct book *book, const char *folder,
+                                struct figures *figures, struct error *error)
+{
+    enum status status = STATUS_OK;
+    size_t first = figures->count;
+    for (size_t g = 0; g < book->groups_count && status == STATUS_OK; g++) {
+        if (figures->count + 2 > first + SHADOWS_MAX)
+            break;
+        status = plot_masks(book, &book->groups[g], folder, &figures->list[figures->count], error);
+        keep(figures);
+        if (status == STATUS_OK)
+            status =
+                plot_pairs(book, &book->groups[g], folder, &figures->list[figures->count], error);
+        keep(figures);
+    }
+    return status;
+}
+
+/* Error, time, memory and wrong shadows against the options that are swept; error against memory of
+ * the group that the headline speaks about. */
 static enum status plan_options(const struct book *book, const char *folder,
                                 struct figures *figures, struct error *error)
 {
@@ -85,14 +102,16 @@ static size_t papers_figures(const struct book *book)
 enum status plots_draw(const struct book *book, const char *folder, struct figures *figures,
                        struct error *error)
 {
-    *figures =
-        (struct figures){.list = ARENA_ARRAY(book->arena, struct figure,
-                                             FAMILIES_MAX * KINDS_COUNT + SWEEPS_MAX * SWEEP_AXES +
-                                                 papers_figures(book) + 2)};
+    *figures = (struct figures){.list = ARENA_ARRAY(book->arena, struct figure,
+                                                    FAMILIES_MAX * KINDS_COUNT + SHADOWS_MAX +
+                                                        SWEEPS_MAX * SWEEP_AXES +
+                                                        papers_figures(book) + 2)};
     enum status status = file_make_folder(folder, error);
     for (size_t g = 0; g < book->groups_count && status == STATUS_OK; g++)
         if (book_is_overview(book, g) && book->groups[g].family < FAMILIES_MAX)
             status = plan_group(book, g, folder, figures, error);
+    if (status == STATUS_OK)
+        status = plan_shadows(book, folder, figures, error);
     if (status == STATUS_OK)
         status = plan_options(book, folder, figures, error);
     for (size_t i = 0; i < book->besides_count && status == STATUS_OK; i++) {

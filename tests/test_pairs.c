@@ -1,0 +1,116 @@
+/* Pairs of cells without and with the sun's shadows: which rows are one. */
+#include "testing.h"
+
+#include "report/pairs.h"
+
+#include <math.h>
+#include <string.h>
+
+static void add(struct arena *arena, struct run *run, const char *method, const char *options,
+                int round, double seconds)
+{
+    struct result *result = &run->results[run->results_count++];
+    struct cell cell = {.scene = "tiny",
+                        .method_name = method,
+                        .options = options,
+                        .trees = 4,
+                        .lod = LOD_AUTO,
+                        .width_px = 96,
+                        .height_px = 72,
+                        .format = TARGET_RGBA16F,
+                        .seed = 1};
+    for (const struct method *const *each = methods_builtin; *each; each++)
+        if (strcmp((*each)->name, method) == 0)
+            cell.method = *each;
+    void *values = arena_alloc(arena, 1, cell.method->options_size);
+    options_default(cell.method->options, values);
+    assert_int_equal(options_parse(cell.method->options, options, values, NULL), STATUS_OK);
+    cell.name = arena_printf(arena, "tiny/%s:%s", method, options);
+    result_init(result, &cell, round);
+    result->instances = 4;
+    result->effects = method_effects(cell.method, values, EFFECTS_ALL);
+    result->scene_effects = EFFECTS_ALL;
+    result->frames_count = 1;
+    result->frame_seconds = ARENA_ARRAY(arena, double, 1);
+    result->frame_seconds[0] = seconds;
+}
+
+static struct shadow_pair *found(struct arena *arena, struct run *run, struct book **book,
+                                 size_t *count)
+{
+    *book = book_make(arena, run);
+    assert_int_equal((*book)->groups_count, 1);
+    return shadow_pairs(*book, (*book)->groups, count);
+}
+
+static struct run *run_new(struct arena *arena)
+{
+    struct run *run = ARENA_NEW(arena, struct run);
+    run->results = ARENA_ARRAY(arena, struct result, 32);
+    return run;
+}
+
+static void test_pairs__a_switch_and_what_depends_on_it_may_differ_and_nothing_else(void **state)
+{
+    (void)state;
+    static const char *const cells[][2] = {
+        {"billboards", ""},
+        {"billboards", "shadow=map"},
+        {"billboards", "shadow=map,casters=billboard"},
+        {"billboards", "views=8,shadow=map"}, /* nobody's */
+        {"ray-texels", "shadows=0"},
+        {"ray-texels", ""},
+        {"ray-texels", "shadows=32"},
+        {"conifers", "shadows=off"},
+        {"shadow-map", ""}, /* has no switch */
+        {"polygons", ""},
+    };
+    static const char *const wanted[][2] = {
+        {"billboards", "billboards shadow=map"},
+        {"billboards", "billboards shadow=map casters=billboard"},
+        {"ray-texels shadows=0", "ray-texels"},
+        {"ray-texels shadows=0", "ray-texels shadows=32"},
+    };
+    struct arena *arena = arena_create(0);
+    struct run *run = run_new(arena);
+    struct book *book;
+    size_t count;
+    for (size_t i = 0; i < sizeof cells / sizeof *cells; i++)
+        add(arena, run, cells[i][0], cells[i][1], 0, 0.01);
+    const struct shadow_pair *pairs = found(arena, run, &book, &count);
+    assert_int_equal(count, sizeof wanted / sizeof *wanted);
+    for (size_t i = 0; i < count; i++) {
+        assert_string_equal(book->rows[pairs[i].without].label, wanted[i][0]);
+        assert_string_equal(book->rows[pairs[i].with].label, wanted[i][1]);
+    }
+    arena_destroy(arena);
+}
+
+/* A machine at half its speed in one round changes no ratio. */
+static void test_pairs__the_price_is_of_times_of_the_same_round(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct run *run = run_new(arena);
+    struct book *book;
+    size_t count;
+    for (int round = 0; round < 3; round++) {
+        double slow = round == 1 ? 2 : 1;
+        add(arena, run, "polygons", "", round, 0.01 * slow);
+        add(arena, run, "polygons", "shadow=map", round, 0.03 * slow);
+    }
+    const struct shadow_pair *pairs = found(arena, run, &book, &count);
+    assert_int_equal(count, 1);
+    assert_true(fabs(pairs->price.value - 3) < 1e-9 && fabs(pairs->price.low - 3) < 1e-9 &&
+                fabs(pairs->price.high - 3) < 1e-9);
+    arena_destroy(arena);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pairs__a_switch_and_what_depends_on_it_may_differ_and_nothing_else),
+        cmocka_unit_test(test_pairs__the_price_is_of_times_of_the_same_round),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
