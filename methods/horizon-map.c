@@ -5,7 +5,7 @@
 #include "bake/skyline.h"
 
 struct options {
-    int samples, azimuths, lookup, triangles;
+    int samples, azimuths, detail, lookup, triangles;
 };
 
 /* clang-format off */
@@ -13,6 +13,8 @@ static const struct option option_table[] = {
     SAMPLING_OPTION(struct options, 0),
     OPTION(struct options, azimuths, 64, 1, SKYLINE_AZIMUTHS_MOST, "",
         "directions that the horizon is known in"),
+    OPTION(struct options, detail, 4, 1, 8, "",
+        "samples of the maps to one of the relief along each axis, as far as 128 MB hold them; 1: as published"),
     OPTION_WORD(struct options, lookup, 0, "mixed|nearest",
         "the horizon toward the sun from the two directions beside it, or the nearest one's, as published"),
     SHADOW_PASSES_TRIANGLES(struct options),
@@ -27,6 +29,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     struct shadow_passes_request request = {.samples = sampling_count(options->samples),
                                             .triangles_most = options->triangles,
                                             .azimuths = options->azimuths,
+                                            .detail = options->detail,
                                             .mixed = options->lookup == 0};
     return shadow_passes_prepare(workspace, scene, &request, state);
 }

@@ -124,6 +124,27 @@ static void test_skyline__sweeps_find_what_a_walk_over_every_edge_finds(void **u
     (void)unused;
 }
 
+/* A finer grid over the same surface, and what is seen from the samples of the coarse one. */
+static void test_skyline__refining_changes_neither_the_surface_nor_what_is_seen(void **unused)
+{
+    enum { SIDE = 25, PARTS = 3 };
+    struct arena *arena = arena_create(0);
+    struct terrain terrain = terrain_make(arena, SIDE, 120, hills), fine;
+    skyline_refine(arena, &terrain, PARTS, &fine);
+    assert_int_equal(fine.samples_x, (SIDE - 1) * PARTS + 1);
+    for (int i = 0; i < 500; i++) {
+        float x = 0.117f * (float)(i - 250), z = 0.0713f * (float)((i * 37) % 500 - 250);
+        assert_float_equal(terrain_height(&fine, x, z), terrain_height(&terrain, x, z), 1e-3);
+    }
+    for (uint32_t k = 0; k < 40; k++) {
+        uint32_t x = 1 + k % 23, z = 1 + (7 * k) % 23;
+        assert_float_equal(skyline_exact(&fine, PARTS * x, PARTS * z, 0.3 * k),
+                           skyline_exact(&terrain, x, z, 0.3 * k), 1e-3);
+    }
+    arena_destroy(arena);
+    (void)unused;
+}
+
 /* Twice as large is as steep; another number of threads is the same. */
 static void test_skyline__scale_and_threads_change_nothing(void **unused)
 {
@@ -150,6 +171,7 @@ int main(void)
         cmocka_unit_test(test_skyline__a_cone_hides_what_geometry_says),
         cmocka_unit_test(test_skyline__a_wall_hides_as_much_along_every_azimuth),
         cmocka_unit_test(test_skyline__sweeps_find_what_a_walk_over_every_edge_finds),
+        cmocka_unit_test(test_skyline__refining_changes_neither_the_surface_nor_what_is_seen),
         cmocka_unit_test(test_skyline__scale_and_threads_change_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -58,7 +58,9 @@ bool shadow_fit_meets(const struct shadow_fit *fit, const double center_m[3], do
 /* The depth in metres that a plane of slope (gradient_x, gradient_y), metres a metre in light
  * space, needs as bias under a filter that reaches reach texels from the point: (k + 1/2) for (2k +
  * 1)^2 nearest taps, k + 1 for bilinear ones; at most sqrt(2) reach w tan(b), b the angle of normal
- * and sun. A departure from glPolygonOffset: exact. */
+ * and sun. A departure from glPolygonOffset: exact. Of planes: where two meet in a
+ * valley, the steeper one's is needed on both sides of the fold; without it thin lines of dots stay
+ * there (plan shadows-stability: .6 to 1 % of a relief under a sun at the zenith). */
 static inline double shadow_bias_m(double reach, const double texel_m[2], double gradient_x,
                                    double gradient_y)
 {

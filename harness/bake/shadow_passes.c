@@ -10,13 +10,26 @@ struct shadow_passes {
     struct shadow_volume *volume; /* NULL: nothing casts one */
 };
 
+/* As many parts as are wanted and texels there is room for. */
+static int parts_of(const struct terrain *terrain, const struct shadow_passes_request *request)
+{
+    const size_t texels_most = (size_t)1 << 25;
+    size_t samples = (size_t)terrain->samples_x * terrain->samples_z * (size_t)request->azimuths;
+    int parts = request->detail;
+    while (parts > 1 && samples * (size_t)(parts * parts) > texels_most)
+        parts--;
+    return parts;
+}
+
 static enum status prepare_skyline(struct workspace *workspace, const struct scene *scene,
                                    const struct shadow_passes_request *request,
                                    struct backdrop *backdrop)
 {
     struct arena *passing = arena_create(0);
     struct skyline skyline;
-    skyline_bake(passing, &scene->terrain, request->azimuths, workspace->threads, &skyline);
+    struct terrain fine;
+    skyline_refine(passing, &scene->terrain, parts_of(&scene->terrain, request), &fine);
+    skyline_bake(passing, &fine, request->azimuths, workspace->threads, &skyline);
     enum status status = backdrop_skyline(workspace, backdrop, &skyline, request->mixed);
     arena_destroy(passing);
     return status;

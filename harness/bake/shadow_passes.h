@@ -12,6 +12,7 @@ struct shadow_passes_request {
     int triangles_most; /* of all trees together */
     struct shadow_volume_request volume;
     int azimuths; /* of horizon maps, and then the relief casts no volume; 0: none */
+    int detail;   /* samples of them to one of the relief along each axis, at most */
     bool mixed;   /* of the two nearest azimuths */
 };
 

@@ -56,6 +56,24 @@ static float height_at(const struct sweep *sweep, double along, double across)
                           : base + v * (by_across - base) + u * (corner - by_across));
 }
 
+void skyline_refine(struct arena *arena, const struct terrain *terrain, int parts,
+                    struct terrain *fine)
+{
+    const struct sweep rows = {.terrain = terrain,
+                               .along = (int)terrain->samples_x,
+                               .across = (int)terrain->samples_z,
+                               .stride_along = 1,
+                               .stride_across = terrain->samples_x};
+    *fine = *terrain;
+    fine->samples_x = (terrain->samples_x - 1) * (uint32_t)parts + 1;
+    fine->samples_z = (terrain->samples_z - 1) * (uint32_t)parts + 1;
+    fine->heights_m = ARENA_ARRAY(arena, float, (size_t)fine->samples_x * fine->samples_z);
+    for (uint32_t z = 0; z < fine->samples_z; z++)
+        for (uint32_t x = 0; x < fine->samples_x; x++)
+            fine->heights_m[(size_t)z * fine->samples_x + x] =
+                height_at(&rows, (double)x / parts, (double)z / parts);
+}
+
 /* A point joins, nearer than all before; those that it hides from all after leave. */
 static void hull_add(struct hull *hull, float at_m, float height_m)
 {

@@ -16,6 +16,12 @@ struct skyline {
     float *tangents; /* azimuths x samples_z x samples_x: of the horizon's elevation */
 };
 
+/* The same surface with more samples: every quad becomes parts x parts, with the same diagonals.
+ * Between samples a map is mixed, while the horizon falls as 1 / distance and jumps where a facet
+ * ends: more samples are nearer to both. */
+void skyline_refine(struct arena *arena, const struct terrain *terrain, int parts,
+                    struct terrain *fine);
+
 /* Each azimuth by one sweep along lines of the grid: the upper hull of what is ahead is kept, and a
  * line's next point looks along its tangent (as Timonen and Westerholm 2010, doi:10.1111/
  * j.1467-8659.2009.01642.x): time and memory are linear in the samples. Stewart 1998
