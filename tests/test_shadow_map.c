@@ -198,6 +198,34 @@ static void test_shadow_map__the_bias_of_the_closed_form_is_enough_and_none_less
         }
 }
 
+/* The lit height of a valley of two slopes, along x of a map's texels. */
+static double valley(double x, const double slopes[2])
+{
+    return fmax(slopes[0] * x, slopes[1] * x);
+}
+
+/* The rule is of planes. Where two meet in a valley, taps beyond the fold rise by the other's
+ * slope: a bias by the receiver's own is too small beside it, the steeper one's is enough. */
+static void test_shadow_map__in_a_valley_the_steeper_side_says_what_bias_is_enough(void **state)
+{
+    (void)state;
+    static const double slopes[2] = {0.2, 1.1}, texel_m[2] = {0.3, 0.3};
+    struct random random = random_seed(6, 0);
+    for (int k = 0; k < 3; k++) {
+        double needed = 0; /* where the slope is the smaller one */
+        for (int i = 0; i < 50000; i++) {
+            double at = -1 * random_double(&random), fold = 0.3 * random_double(&random);
+            double first = 0.3 * floor((at - fold) / 0.3) + fold + 0.15;
+            for (int dx = -k; dx <= k; dx++)
+                needed = fmax(needed, valley(first + 0.3 * dx, slopes) - valley(at, slopes));
+        }
+        double own = shadow_bias_m(k + 0.5, texel_m, slopes[0], 0);
+        double steeper = shadow_bias_m(k + 0.5, texel_m, slopes[1], 0);
+        if (!(needed > 2 * own && needed <= steeper && needed > 0.97 * steeper))
+            fail_msg("%d taps: needed %g, own %g, steeper %g", 2 * k + 1, needed, own, steeper);
+    }
+}
+
 #define STAIRS "/trees=1/size=64x48"
 
 static void test_shadow_map__a_closed_mesh_has_no_acne_with_bias_and_much_without(void **state)
@@ -269,6 +297,7 @@ int main(void)
         cmocka_unit_test(test_shadow_map__stable_texels_stand_still_while_the_eye_moves),
         cmocka_unit_test(test_shadow_map__every_fit_holds_its_slice_under_any_sun),
         cmocka_unit_test(test_shadow_map__the_bias_of_the_closed_form_is_enough_and_none_less_is),
+        cmocka_unit_test(test_shadow_map__in_a_valley_the_steeper_side_says_what_bias_is_enough),
         cmocka_unit_test(test_shadow_map__a_closed_mesh_has_no_acne_with_bias_and_much_without),
         cmocka_unit_test(test_shadow_map__settings_at_both_ends_draw_finite_pictures),
     };
