@@ -137,7 +137,30 @@ static void test_grammar__that_does_not_end_or_explodes_is_refused(void **state)
                              "B", "B C") "," RULE("C", "B")),
             "more than");
     refused(*state, GRAMMAR("F(1,1,1) T(1,1,1e6,1e6,1,1,1,1,1)", ""), "more than 16777216 needles");
-    refused(*state, GRAMMAR("A(1)", RULE("A(x)", "A(x / 0)")), "is inf at step 1");
+    refused(*state, GRAMMAR("A(1)", RULE("A(x)", "A(x / 0)")),
+            "A: argument 1 of module 1 is infinite at step 1");
+    refused(*state, GRAMMAR("f(0 / 0)", ""),
+            "axiom: argument 1 of module 1 is no number at step 0");
+    refused(*state,
+            "{\"axiom\": \"A\", \"rules\": [{\"of\": \"A\", \"when\": \"0 / 0\", \"to\": \"\"}]}",
+            "A: the condition of its rule 1 is no number at step 1");
+}
+
+/* What takes long without writing much: a hundred conditions of three operations, of which none
+ * holds, for each of 2^(step - 1) modules. */
+static void test_grammar__whose_conditions_take_too_long_is_refused(void **state)
+{
+    enum { CONDITIONS = 100, SIZE = 1 << 16 };
+    char *text = arena_alloc(*state, SIZE, 1);
+    size_t used = (size_t)snprintf(text, SIZE,
+                                   "{\"axiom\": \"A(0)\", \"rules\": ["
+                                   "{\"of\": \"A(i)\", \"when\": \"i < 18\", \"to\": \"A(i + 1) "
+                                   "A(i + 1)\"}");
+    for (int k = 0; k < CONDITIONS; k++)
+        used += (size_t)snprintf(text + used, SIZE - used,
+                                 ", {\"of\": \"A(i)\", \"when\": \"i > 18\", \"to\": \"\"}");
+    snprintf(text + used, SIZE - used, "]}");
+    refused(*state, text, "more than 67108864 operations of expressions at step 18");
 }
 
 static void test_grammar__that_is_wrong_is_refused_by_name(void **state)
@@ -152,6 +175,8 @@ static void test_grammar__that_is_wrong_is_refused_by_name(void **state)
     refused(*state, GRAMMAR("[f(1)", ""), "brackets do not pair");
     refused(*state, GRAMMAR("f(1)", RULE("F(l)", "")), "rules[0].of");
     refused(*state, GRAMMAR("A(1)", RULE("A(l)", "") "," RULE("A", "")), "1 arguments, as before");
+    refused(*state, GRAMMAR("A(1, 2)", RULE("A(l, l)", "")), "rules[0].of");
+    refused(*state, GRAMMAR("F(1, 1e-9, 1)", ""), "a branch's radius is 1e-09");
     refused(*state, "{\"axiom\": \"f(1)\", \"rulez\": []}", "rulez");
     refused(*state, GRAMMAR("f(((((((((((((((((((((((((((((((1)))))))))))))))))))))))))))))))", ""),
             "too deep");
@@ -286,6 +311,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_expressions__bind_and_compute_as_in_arithmetic, setup, teardown),
         cmocka_unit_test_setup_teardown(test_stochastic__rules_are_drawn_by_weight_and_by_seed, setup, teardown),
         cmocka_unit_test_setup_teardown(test_grammar__that_does_not_end_or_explodes_is_refused, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_grammar__whose_conditions_take_too_long_is_refused, setup, teardown),
         cmocka_unit_test_setup_teardown(test_grammar__that_is_wrong_is_refused_by_name, setup, teardown),
         cmocka_unit_test_setup_teardown(test_turtle__draws_where_geometry_says, setup, teardown),
         cmocka_unit_test_setup_teardown(test_turtle__gives_each_twig_to_the_branch_it_stands_on, setup, teardown),

@@ -105,7 +105,11 @@ static bool read_head(const char *text, struct name *name, char (*arguments)[NAM
         if (length == 0 || length >= NAME_SIZE || name->arguments_count == LSYSTEM_ARGUMENTS_MAX)
             return false;
         memset(arguments[name->arguments_count], 0, NAME_SIZE);
-        memcpy(arguments[name->arguments_count++], text, length);
+        memcpy(arguments[name->arguments_count], text, length);
+        for (int k = 0; k < name->arguments_count; k++)
+            if (strcmp(arguments[k], arguments[name->arguments_count]) == 0)
+                return false;
+        name->arguments_count++;
         text = after_blanks(text + length);
     } while (*text == ',');
     return *text == ')' && text[1] == '\0';
@@ -208,7 +212,7 @@ static void find_names(struct arena *arena, struct json *root, size_t count,
         if (!read_head(head, &name, arguments)) {
             json_fail(object, "of",
                       "value is '%.60s'; allowed: a name, not F, f or T, and the "
-                      "names of its arguments",
+                      "names of its arguments, each another",
                       head);
             return;
         }

@@ -5,7 +5,9 @@
  * conditional and stochastic rules, a turtle with heading, left and up. scenes/plants/README.md
  * documents the file and the turtle's symbols. All modules are rewritten at once, step by step,
  * until no rule matches any. What does not end within LSYSTEM_STEPS_MAX steps, grows above
- * LSYSTEM_MODULES_MAX modules or takes more than LSYSTEM_REWRITES_MAX applications is refused. */
+ * LSYSTEM_MODULES_MAX modules or takes more than LSYSTEM_REWRITES_MAX applications or
+ * LSYSTEM_OPERATIONS_MAX operations of expressions (a number, a name and an operator are one each)
+ * is refused. */
 #ifndef TREELINE_PLANT_LSYSTEM_H
 #define TREELINE_PLANT_LSYSTEM_H
 
@@ -17,6 +19,7 @@ enum {
     LSYSTEM_STEPS_MAX = 1000,
     LSYSTEM_MODULES_MAX = 1 << 20,
     LSYSTEM_REWRITES_MAX = 4 << 20,
+    LSYSTEM_OPERATIONS_MAX = 64 << 20,
     LSYSTEM_ARGUMENTS_MAX = 9,
 };
 

@@ -11,7 +11,7 @@ struct derivation {
     struct random random;
     double parameters[PARAMETERS_MAX];
     struct modules from, to;
-    size_t from_capacity, to_capacity, rewrites;
+    size_t from_capacity, to_capacity, rewrites, operations;
     int step;
 };
 
@@ -36,11 +36,19 @@ static struct module *module_new(struct derivation *d)
     return &d->to.modules[d->to.count++];
 }
 
-/* Writes a text's modules with the values of a rule's arguments. */
-static enum status write_text(struct derivation *d, const struct text *text,
-                              const double *arguments, struct error *error)
+static double value_of(struct derivation *d, const struct expression *expression,
+                       const double *arguments)
 {
     const struct values values = {arguments, d->parameters, &d->random};
+    d->operations += expression->count;
+    return expression_value(expression, &values);
+}
+
+/* Writes the modules of a text, the axiom's or that of a name's rule, with the values of the rule's
+ * arguments. */
+static enum status write_text(struct derivation *d, const struct text *text, const char *of,
+                              const double *arguments, struct error *error)
+{
     for (size_t k = 0; k < text->count; k++) {
         const struct written *from = &text->modules[k];
         if (d->to.count == LSYSTEM_MODULES_MAX)
@@ -49,37 +57,45 @@ static enum status write_text(struct derivation *d, const struct text *text,
         to->symbol = from->symbol;
         to->arguments_count = from->arguments_count;
         for (int i = 0; i < from->arguments_count; i++) {
-            to->arguments[i] = expression_value(&from->arguments[i], &values);
-            if (!isfinite(to->arguments[i]))
+            double value = to->arguments[i] = value_of(d, &from->arguments[i], arguments);
+            if (!isfinite(value))
                 return error_set(error, STATUS_INVALID,
-                                 "%s: argument %d of module %zu of a text is %g at step %d; "
-                                 "allowed: finite numbers",
-                                 d->lsystem->where, i + 1, k + 1, to->arguments[i], d->step);
+                                 "%s: %s: argument %d of module %zu is %s at step %d; allowed: "
+                                 "finite numbers",
+                                 d->lsystem->where, of, i + 1, k + 1,
+                                 isnan(value) ? "no number" : "infinite", d->step);
         }
     }
     return STATUS_OK;
 }
 
-/* The rule for a module, drawn by weight among those whose condition holds; NULL: none. */
-static const struct rule *rule_for(struct derivation *d, const struct module *module)
+/* *found: a name's rule for a module, drawn by weight among those whose condition holds; NULL:
+ * none. */
+static enum status rule_for(struct derivation *d, const struct name *name,
+                            const struct module *module, const struct rule **found,
+                            struct error *error)
 {
-    if (module->symbol < SYMBOLS_COUNT)
-        return NULL;
-    const struct name *name = &d->lsystem->names[module->symbol - SYMBOLS_COUNT];
-    const struct values values = {module->arguments, d->parameters, &d->random};
-    const struct rule *rules = d->lsystem->rules + name->first_rule, *found = NULL;
+    const struct rule *rules = d->lsystem->rules + name->first_rule;
     double total = 0;
+    *found = NULL;
     for (size_t k = 0; k < name->rules_count; k++) {
         const struct expression *condition = &rules[k].condition;
-        if (rules[k].weight <= 0 ||
-            (condition->count && !(expression_value(condition, &values) != 0)))
+        if (rules[k].weight <= 0)
+            continue;
+        double holds = condition->count ? value_of(d, condition, module->arguments) : 1;
+        if (isnan(holds))
+            return error_set(error, STATUS_INVALID,
+                             "%s: %s: the condition of its rule %zu is no number at step %d; "
+                             "allowed: 0 for no, others for yes",
+                             d->lsystem->where, name->text, k + 1, d->step);
+        if (holds == 0)
             continue;
         total += rules[k].weight;
         /* One draw a candidate keeps each with its share; none is drawn for a single one. */
-        if (!found || random_double(&d->random) * total < rules[k].weight)
-            found = &rules[k];
+        if (!*found || random_double(&d->random) * total < rules[k].weight)
+            *found = &rules[k];
     }
-    return found;
+    return STATUS_OK;
 }
 
 /* One step; *rewritten: whether any rule matched. */
@@ -89,7 +105,15 @@ static enum status rewrite(struct derivation *d, bool *rewritten, struct error *
     d->to.count = 0;
     for (size_t k = 0; k < d->from.count; k++) {
         const struct module *module = &d->from.modules[k];
-        const struct rule *rule = rule_for(d, module);
+        const struct name *name = module->symbol < SYMBOLS_COUNT
+                                      ? NULL
+                                      : &d->lsystem->names[module->symbol - SYMBOLS_COUNT];
+        const struct rule *rule = NULL;
+        enum status status = name ? rule_for(d, name, module, &rule, error) : STATUS_OK;
+        if (status != STATUS_OK)
+            return status;
+        if (d->operations > LSYSTEM_OPERATIONS_MAX)
+            return too_much(d, "operations of expressions", LSYSTEM_OPERATIONS_MAX, error);
         if (!rule) {
             if (d->to.count == LSYSTEM_MODULES_MAX)
                 return too_much(d, "modules", LSYSTEM_MODULES_MAX, error);
@@ -99,7 +123,7 @@ static enum status rewrite(struct derivation *d, bool *rewritten, struct error *
         *rewritten = true;
         if (++d->rewrites > LSYSTEM_REWRITES_MAX)
             return too_much(d, "rewritings", LSYSTEM_REWRITES_MAX, error);
-        enum status status = write_text(d, &rule->to, module->arguments, error);
+        status = write_text(d, &rule->to, name->text, module->arguments, error);
         if (status != STATUS_OK)
             return status;
     }
@@ -116,7 +140,7 @@ static void swap(struct derivation *d)
 
 static enum status derive(struct derivation *d, struct error *error)
 {
-    enum status status = write_text(d, &d->lsystem->axiom, NULL, error);
+    enum status status = write_text(d, &d->lsystem->axiom, "axiom", NULL, error);
     swap(d);
     for (bool rewritten = true; status == STATUS_OK && rewritten;) {
         if (++d->step > LSYSTEM_STEPS_MAX)

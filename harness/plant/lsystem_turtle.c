@@ -59,11 +59,11 @@ static void vec_to(struct vec v, float to[3])
 static enum status draw_branch(struct drawing *d, size_t number, const double *a,
                                struct error *error)
 {
-    if (!(a[0] > 0) || a[0] > 1000)
-        return wrong(d, number, "a branch's length", a[0], "above 0, at most 1000 m", error);
+    if (!(a[0] >= 1e-6 && a[0] <= 1000))
+        return wrong(d, number, "a branch's length", a[0], "1e-06..1000 m", error);
     for (int k = 1; k < 3; k++)
-        if (!(a[k] > 0) || a[k] > 100)
-            return wrong(d, number, "a branch's radius", a[k], "above 0, at most 100 m", error);
+        if (!(a[k] >= 1e-6 && a[k] <= 100))
+            return wrong(d, number, "a branch's radius", a[k], "1e-06..100 m", error);
     struct turtle *t = &d->turtle;
     struct conifer_branch *branch = &d->conifer->branches[d->conifer->branches_count];
     vec_to(t->at, branch->from_m);
