@@ -129,6 +129,33 @@ static struct mesh *squares(struct arena *arena, size_t count, float half_m)
     return mesh_done(arena, mesh);
 }
 
+/* Needles: closed pieces of leaf that face outward, flat ones over each other. */
+static struct mesh *slabs(struct arena *arena, size_t count, float half_m)
+{
+    struct mesh *mesh = mesh_make(arena, MATERIAL_LEAF, 12 * count);
+    mesh->materials->solid = true;
+    for (size_t i = 0; i < count; i++) {
+        const float low = 2 + 0.004f * (float)i, high = low + 0.002f;
+        float corner[2][4][3];
+        for (int k = 0; k < 4; k++)
+            for (int up = 0; up < 2; up++) {
+                corner[up][k][0] = k == 1 || k == 2 ? half_m : -half_m;
+                corner[up][k][1] = up ? high : low;
+                corner[up][k][2] = k < 2 ? half_m : -half_m;
+            }
+        for (int k = 1; k < 3; k++) {
+            add_triangle(mesh, corner[1][0], corner[1][k], corner[1][k + 1]);
+            add_triangle(mesh, corner[0][0], corner[0][k + 1], corner[0][k]);
+        }
+        for (int k = 0; k < 4; k++) {
+            int next = (k + 1) % 4;
+            add_triangle(mesh, corner[0][k], corner[0][next], corner[1][next]);
+            add_triangle(mesh, corner[0][k], corner[1][next], corner[1][k]);
+        }
+    }
+    return mesh_done(arena, mesh);
+}
+
 static void add_to_embree(struct rig *rig, const struct mesh *mesh, const struct instance *instance)
 {
     struct embree_part part = {0, (uint32_t)mesh->triangles_count, NULL, NULL};
@@ -405,27 +432,36 @@ test_shadow__an_eye_toward_the_sun_and_planes_a_million_apart_are_no_matter(void
     (void)unused;
 }
 
-/* Eight bits wrap: 256 volumes are 0, and so is 512; every other number is a shadow. */
+/* Whether the ground below a plant under a sun at the zenith is lit. */
+static bool is_lit_below(struct arena *arena, struct mesh *plant)
+{
+    struct rig *rig = rig_open(plant, arena, flat);
+    struct setting setting = {.method = "shadow-volume",
+                              .options = "samples=1,test=z-fail",
+                              .backend = "osmesa",
+                              .effects = EFFECT_SUN_SHADOWS,
+                              .format = TARGET_RGBA32F};
+    view_look_at(rig->scene, (float[3]){0, 1.5f, 0}, (float[3]){0, 0, 0.1f}, &rig->view);
+    struct picture picture = picture_draw(arena, rig->scene, &rig->view, &setting);
+    embree_destroy(rig->embree);
+    return picture.rgba[4 * (HEIGHT / 2 * WIDTH + WIDTH / 2)] > 0;
+}
+
+/* Eight bits wrap: 256 volumes are 0, and so is 512; every other number is a shadow. A needle has
+ * two sides and is one volume. */
 static void test_shadow__counts_wrap_at_256_volumes_alone(void **unused)
 {
     static const struct {
         size_t count;
         bool lit;
-    } stacks[] = {{1, false}, {255, false}, {256, true}, {257, false}, {512, true}};
-    for (size_t s = 0; s < sizeof stacks / sizeof *stacks; s++) {
-        struct arena *arena = arena_create(0);
-        struct rig *rig = rig_open(squares(arena, stacks[s].count, 6), arena, flat);
-        struct setting setting = {.method = "shadow-volume",
-                                  .options = "samples=1,test=z-fail",
-                                  .backend = "osmesa",
-                                  .effects = EFFECT_SUN_SHADOWS,
-                                  .format = TARGET_RGBA32F};
-        view_look_at(rig->scene, (float[3]){0, 1.5f, 0}, (float[3]){0, 0, 0.1f}, &rig->view);
-        struct picture picture = picture_draw(arena, rig->scene, &rig->view, &setting);
-        float red = picture.rgba[4 * (HEIGHT / 2 * WIDTH + WIDTH / 2)];
-        assert_int_equal(red > 0, stacks[s].lit);
-        arena_destroy(arena);
-    }
+    } stacks[] = {{1, false}, {255, false}, {256, true}, {257, false}, {512, true}},
+      needles[] = {{1, false}, {128, false}, {256, true}};
+    struct arena *arena = arena_create(0);
+    for (size_t s = 0; s < sizeof stacks / sizeof *stacks; s++)
+        assert_int_equal(is_lit_below(arena, squares(arena, stacks[s].count, 6)), stacks[s].lit);
+    for (size_t s = 0; s < sizeof needles / sizeof *needles; s++)
+        assert_int_equal(is_lit_below(arena, slabs(arena, needles[s].count, 6)), needles[s].lit);
+    arena_destroy(arena);
     (void)unused;
 }
 
@@ -455,8 +491,9 @@ static void test_caster__boundaries_are_closed_whatever_the_mesh_and_the_sun(voi
 {
     struct arena *arena = arena_create(0);
     struct random random = random_seed(1, 1);
-    struct mesh *meshes[3] = {ring(arena, 12, 8), leaves(arena, 60), squares(arena, 1, 1)};
-    for (int m = 0; m < 3; m++)
+    struct mesh *meshes[4] = {ring(arena, 12, 8), leaves(arena, 60), squares(arena, 1, 1),
+                              slabs(arena, 2, 1)};
+    for (int m = 0; m < 4; m++)
         for (int s = 0; s < 20; s++) {
             struct shadow_caster caster;
             float sun[3] = {random_float(&random) - 0.5f, random_float(&random) - 0.5f,
@@ -466,7 +503,7 @@ static void test_caster__boundaries_are_closed_whatever_the_mesh_and_the_sun(voi
             struct shadow_boundary boundary = {.walls = ARENA_ARRAY(arena, uint32_t, room),
                                                .caps = ARENA_ARRAY(arena, uint32_t, room / 6),
                                                .leaf_caps = ARENA_ARRAY(arena, uint32_t, room / 6)};
-            assert_int_equal(caster.kinds[0], m ? SHADOW_LEAF : SHADOW_SOLID);
+            assert_int_equal(caster.kinds[0], m % 3 ? SHADOW_LEAF : SHADOW_SOLID);
             uint32_t points = (uint32_t)caster.points_count;
             shadow_caster_extrude(&caster, sun, s % 4 != 3, 0, points, &boundary);
             assert_true(boundary.walls_count > 0);

@@ -50,7 +50,7 @@ static void weld(struct arena *arena, struct arena *passing, const struct mesh *
     caster->kinds = ARENA_ARRAY(arena, uint8_t, mesh->triangles_count);
     for (size_t p = 0; p < mesh->parts_count; p++) {
         const struct mesh_part *part = &mesh->parts[p];
-        bool leaf = mesh->materials[part->material].kind == MATERIAL_LEAF;
+        bool leaf = material_is_thin(&mesh->materials[part->material]);
         for (uint32_t t = 0; t < part->triangles_count; t++) {
             const uint32_t *from = mesh->triangles[part->first_triangle + t];
             uint32_t *to = caster->triangles[caster->triangles_count];
@@ -124,7 +124,8 @@ static uint32_t root_of(uint32_t *parents, uint32_t point)
     return point;
 }
 
-/* Six times the volume of each connected piece of bark; NaN where an edge is not closed. */
+/* Six times the volume of each connected piece of bark or needles; NaN where an edge is not closed.
+ */
 static void find_volumes(const struct shadow_caster *caster, uint32_t *parents, double *volumes)
 {
     for (uint32_t i = 0; i < caster->points_count; i++)

@@ -12,9 +12,10 @@
 #include "base/arena.h"
 #include "plant/mesh.h"
 
-/* SOLID: bark whose pieces are closed and outward, and ground: the side away from the sun casts, so
- * that a lit surface is nowhere at its own volume's cap, and what faces away is within. OPEN: other
- * bark. LEAF: thin, lit on both sides. Of both each triangle casts, turned to the sun. */
+/* SOLID: bark and needles whose pieces are closed and outward, and ground: the side away from the
+ * sun casts, so that a lit surface is nowhere at its own volume's cap, and what faces away is
+ * within. OPEN: other bark, other needles. LEAF: thin, lit on both sides. Of both each triangle
+ * casts, turned to the sun. */
 enum shadow_kind { SHADOW_SOLID, SHADOW_OPEN, SHADOW_LEAF };
 
 struct shadow_caster {
