@@ -52,6 +52,23 @@ static void put_line(const struct page *page, const struct paper_line *line)
             number_plain(line->ratio.value / line->printed_ratio, 3).text);
 }
 
+/* Which laws fit: that of the least residual, and those whose residual is within a tenth of it. */
+static void put_best_laws(const struct page *page, const char *side, const struct growth_fit *fits)
+{
+    const char *words[GROWTH_LAWS];
+    double least = INFINITY;
+    int count = 0;
+    for (int law = 0; law < GROWTH_LAWS; law++)
+        least = fmin(least, fits[law].residual);
+    for (int law = 0; law < GROWTH_LAWS; law++)
+        if (fits[law].residual <= 1.1 * least)
+            words[count++] = growth_word((enum growth_law)law);
+    fprintf(page->out, "%s: ", side);
+    for (int i = 0; i < count; i++)
+        fprintf(page->out, "%s<b>%s</b>", i == 0 ? "" : i == count - 1 ? " or " : ", ", words[i]);
+    page_text(page, count > 1 ? ", within a tenth of the least residual. " : ". ");
+}
+
 /* The laws that the times may grow by, each with its residual: the least is marked. */
 static void put_laws(const struct page *page, const struct paper_block *block)
 {
@@ -80,7 +97,10 @@ static void put_laws(const struct page *page, const struct paper_block *block)
         }
         page_text(page, "</tr>\n");
     }
-    page_text(page, "</tbody></table></div>\n");
+    page_text(page, "</tbody></table></div>\n<p>What fits best: ");
+    put_best_laws(page, "printed", block->printed_fits);
+    put_best_laws(page, "ours", block->fits);
+    page_text(page, "</p>\n");
 }
 
 static void put_block(const struct page *page, const struct paper_block *block)
@@ -105,8 +125,9 @@ static void put_block(const struct page *page, const struct paper_block *block)
     put_laws(page, block);
     for (size_t i = 0; i < block->lines_count; i++)
         if (*block->lines[i].printed->note) {
-            fprintf(page->out, "<p class=\"soft\">%s trees, %s, ",
+            fprintf(page->out, "<p class=\"soft\">%s tree%s, %s, ",
                     number_plain((double)block->lines[i].printed->cell.trees, 15).text,
+                    plural(block->lines[i].printed->cell.trees),
                     lod_word(block->lines[i].printed->cell.lod));
             page_safe(page, block->lines[i].printed->effects);
             page_text(page, ": ");

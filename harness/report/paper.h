@@ -129,6 +129,10 @@ struct paper_finding *paper_judge(const struct book *book, const struct paper *p
 
 /* A row's method and options, without its level: "shaded-texels path=naive". */
 const char *paper_variant(struct arena *arena, const struct row *row);
+/* A block's variant among those of its method, from 0 in the order of their first blocks. is_first:
+ * no earlier block is of it. */
+size_t paper_variant_number(struct arena *arena, const struct paper_beside *beside, size_t block,
+                            bool *is_first);
 const char *paper_verdict_word(enum paper_verdict verdict);
 const char *paper_unit_word(enum paper_unit unit);
 /* "3 or more", "-1.1 to -0.9". */

@@ -136,6 +136,25 @@ const char *paper_variant(struct arena *arena, const struct row *row)
     return *options ? arena_printf(arena, "%s %s", row->method, options) : row->method;
 }
 
+size_t paper_variant_number(struct arena *arena, const struct paper_beside *beside, size_t block,
+                            bool *is_first)
+{
+    const char *own = paper_variant(arena, beside->blocks[block].example);
+    size_t number = 0;
+    *is_first = true;
+    for (size_t i = 0; i < block && *is_first; i++) {
+        const char *earlier = paper_variant(arena, beside->blocks[i].example);
+        bool begins = true;
+        for (size_t k = 0; k < i && begins; k++)
+            begins = strcmp(paper_variant(arena, beside->blocks[k].example), earlier) != 0;
+        *is_first = strcmp(earlier, own) != 0;
+        number +=
+            begins && *is_first &&
+            beside->blocks[i].example->method_index == beside->blocks[block].example->method_index;
+    }
+    return number;
+}
+
 /* Our sample of the variant that stands for a printed row; NULL: the run has none. */
 static const struct paper_sample *find(struct bench *bench, const struct paper_table *table,
                                        const struct paper_row *printed, const struct row *variant)

@@ -78,12 +78,13 @@ static void put_blocks(struct plot *plot, const struct paper_beside *beside,
                        const struct paper_table *table)
 {
     const struct book *book = plot->book;
-    int variants = 0;
+    bool any = false, is_first;
     for (size_t b = 0; b < beside->blocks_count; b++) {
         const struct paper_block *block = &beside->blocks[b];
         if (block->table != table || !is_drawn(block))
             continue;
         size_t method = block->example->method_index;
+        size_t variant = paper_variant_number(book->arena, beside, b, &is_first);
         struct curve curve = {.label = "printed",
                               .fits = block->printed_fits,
                               .is_printed = true,
@@ -91,16 +92,16 @@ static void put_blocks(struct plot *plot, const struct paper_beside *beside,
                               .type = 2,
                               .color = tint_rgb(TINT_INK),
                               .dashes = 1};
-        if (!variants)
+        if (!any)
             put_curve(plot, block, &curve);
         curve = (struct curve){.label = paper_variant(book->arena, block->example),
                                .fits = block->fits,
                                .base_s = time_at(block, table->base, false),
-                               .type = symbol_gnuplot(book, method, variants == 0),
+                               .type = symbol_gnuplot(book, method, variant == 0),
                                .color = tint_rgb(tint_method(book, method)),
-                               .dashes = 1 + variants % 5};
+                               .dashes = 1 + (int)(variant % 5)};
         put_curve(plot, block, &curve);
-        variants++;
+        any = true;
     }
 }
 

@@ -25,9 +25,13 @@ static size_t survey(const struct paper_beside *beside, struct axis *both)
     return count;
 }
 
-static void put_block(struct plot *plot, const struct paper_block *block, int variant)
+/* The first variant of a method is filled; each is named once, whatever tables it is in. */
+static void put_block(struct plot *plot, const struct paper_beside *beside, size_t index)
 {
     const struct book *book = plot->book;
+    const struct paper_block *block = &beside->blocks[index];
+    bool is_first;
+    size_t variant = paper_variant_number(book->arena, beside, index, &is_first);
     size_t method = block->example->method_index;
     int data = plot_block(plot, "printed ratio, ours, low, high");
     size_t count = 0;
@@ -46,21 +50,16 @@ static void put_block(struct plot *plot, const struct paper_block *block, int va
     plot_curve(plot);
     fprintf(plot->gp,
             "\"%s.dat\" index %d with yerrorbars pointtype %d pointsize 0.9 linewidth 1 linecolor "
-            "rgb \"#%06x\" title ",
+            "rgb \"#%06x\" ",
             plot->name, data, symbol_gnuplot(book, method, variant == 0),
             tint_rgb(tint_method(book, method)));
+    if (!is_first) {
+        fputs("notitle", plot->gp);
+        return;
+    }
+    fputs("title ", plot->gp);
     plot_text(plot->gp, paper_variant(book->arena, block->example));
     plot->key_rows++;
-}
-
-/* How many blocks of the same method come before: the first is filled. */
-static int variant_of(const struct paper_beside *beside, size_t index)
-{
-    int before = 0;
-    for (size_t i = 0; i < index; i++)
-        before +=
-            beside->blocks[i].example->method_index == beside->blocks[index].example->method_index;
-    return before;
 }
 
 enum status plot_paper(const struct book *book, const struct paper_beside *beside,
@@ -80,6 +79,6 @@ enum status plot_paper(const struct book *book, const struct paper_beside *besid
     fprintf(plot.gp, "x with lines linewidth 1 dashtype 2 linecolor rgb \"#%06x\" notitle",
             tint_rgb(TINT_MUTED));
     for (size_t b = 0; b < beside->blocks_count; b++)
-        put_block(&plot, &beside->blocks[b], variant_of(beside, b));
+        put_block(&plot, beside, b);
     return plot_close(&plot, figure, error);
 }
