@@ -17,7 +17,23 @@ static struct needles_sight_double golden_sight(const struct golden_g2 *g)
     return needles_sight_of_double(light, eye, g->exponent, false);
 }
 
-/* (4) in its own domain, N.H > 0: clamped it is off by at most 1.2 / n there. */
+/* (4): s_h^n / 2 cos(alpha_H - alpha_V) sqrt(2 pi / n), clamped. */
+static double printed_needle(const double axis[3], const double eye[3], const double half[3],
+                             double n)
+{
+    double h[3], v[3], lengths[2] = {0, 0}, dot = 0;
+    for (int i = 0; i < 3; i++) {
+        h[i] = half[i] - needles_dot_double(axis, half) * axis[i];
+        v[i] = eye[i] - needles_dot_double(axis, eye) * axis[i];
+        lengths[0] += h[i] * h[i];
+        lengths[1] += v[i] * v[i];
+        dot += h[i] * v[i];
+    }
+    double cosine = lengths[1] > 1e-20 ? dot / sqrt(lengths[0] * lengths[1]) : 0;
+    return fmax(0, pow(lengths[0], n / 2) / 2 * cosine * sqrt(2 * PI / n));
+}
+
+/* In its own domain, N.H > 0, (4) is off by at most 1.2 / n. */
 static void test_printed__needle_shines_as_far_from_the_golden_one_as_is_known(void **state)
 {
     (void)state;
@@ -30,6 +46,8 @@ static void test_printed__needle_shines_as_far_from_the_golden_one_as_is_known(v
         struct needles_sight_double sight = needles_sight_of_double(light, eye, g->exponent, false);
         struct needles_shine_double shine = needles_paper_reflect_double(axis, &sight);
         assert_true(fabs(shine.diffuse - g->diffuse) < 1e-10);
+        assert_true(fabs(shine.specular - printed_needle(axis, eye, sight.half, g->exponent)) <
+                    1e-10);
         assert_true(fabs(shine.specular - g->specular_all) <
                     fmin(1.2 / g->exponent, 0.1 * g->specular_all + 0.02));
     }
@@ -200,6 +218,134 @@ static void test_printed__twig_is_shaded_by_the_ways_of_light_through_its_halves
     }
 }
 
+static double between(double value, double most)
+{
+    return fmin(fmax(value, 0), most);
+}
+
+static void same(double got, double wanted)
+{
+    if (!(fabs(got - wanted) <= 1e-9 + 1e-7 * fabs(wanted)))
+        fail_msg("%.12g; printed %.12g", got, wanted);
+}
+
+/* A drawn cone and twig, and the printed terms of both halves, clamped: (11), (7), (9) over (11).
+ */
+struct drawn {
+    struct needles_twig_double twig;
+    struct needles_sight_double sight;
+    double phi, eye_rad, light_rad, turn;
+    double seen[2], diffuse[2], shine[2];
+};
+
+/* (7), as it stands there. */
+static void printed_lit(struct drawn *d, double light_eye)
+{
+    const double al = fmax(d->light_rad, d->phi), bl = fmin(d->light_rad, d->phi);
+    const double av = fmax(d->eye_rad, d->phi), bv = fmin(d->eye_rad, d->phi);
+    const double a = al + av, b = bl + bv, most = cos(a - b), least = cos(a + b);
+    const double lambda1 = (least - most) / 2;
+    const double lambda2 = a - b < PI && PI < a + b ? lambda1 * b / (4 * (2 * PI - a)) : 0;
+    const double lambda0 = (least + most) / 2 - lambda2;
+    const double aside =
+        (bl * cos(d->turn) + bv) / sqrt(bl * bl + bv * bv + 2 * bl * bv * cos(d->turn));
+    for (int half = 0; half < 2; half++)
+        d->diffuse[half] = (PI * (light_eye - lambda0) + (half ? 2 : -2) * lambda1 * aside) / 4;
+}
+
+static struct drawn draw(struct random *random)
+{
+    double light[3], eye[3];
+    struct drawn d = {.phi = (10 + 70 * random_double(random)) * PI / 180};
+    random_direction(random, light);
+    random_direction(random, eye);
+    const double count = 10 + 20 * random_double(random), radius = 2e-4;
+    d.twig = needles_twig_of_double(d.phi, count, 0.02, radius,
+                                    count * radius / (0.1 + 1.5 * random_double(random)));
+    d.sight = needles_sight_of_double(light, eye, 20, false);
+    d.eye_rad = acos(eye[2]);
+    d.light_rad = acos(light[2]);
+    d.turn = atan2(light[1], light[0]) - atan2(eye[1], eye[0]);
+    printed_lit(&d, needles_dot_double(light, eye));
+    /* (9): azimuths where needles are square to H, toward the eye or not. */
+    const double *h = d.sight.half;
+    const double root = -1 / (tan(d.phi) * tan(acos(h[2])));
+    for (int sign = -1; sign <= 1 && fabs(root) <= 1; sign += 2) {
+        double at = atan2(h[1], h[0]) + sign * acos(root) - atan2(eye[1], eye[0]);
+        d.shine[cos(at) <= 0] += PI / 20 * d.sight.half_dot;
+    }
+    for (int half = 0; half < 2; half++) {
+        double swing = 2 * sin(d.phi) * sin(d.eye_rad);
+        d.seen[half] = between(PI * cos(d.phi) * cos(d.eye_rad) + (half ? swing : -swing), PI);
+        d.diffuse[half] = between(d.diffuse[half], PI / 4 * d.seen[half]);
+        d.shine[half] = between(d.shine[half], d.seen[half]);
+    }
+    return d;
+}
+
+/* A cone: (6), (8), (10) with the factor N r l / (pi S) for their l A. */
+static void test_printed__cone_has_its_terms_over_its_section(void **state)
+{
+    (void)state;
+    struct random random = random_seed(3, 1);
+    int sure = 0;
+    for (int i = 0; i < 2000; i++) {
+        struct drawn d = draw(&random);
+        double all = d.seen[0] + d.seen[1], part = random_double(&random);
+        double area = d.twig.count * 2e-4 * 0.02, section = area * (0.1 + 4 * part);
+        if (all < 1e-3)
+            continue;
+        struct needles_cone_shade_double shade =
+            needles_paper_cone_shade_double(&d.twig, &d.sight, section);
+        double opacity = area / PI * all / section;
+        sure += opacity > 1;
+        same(shade.all.opacity, fmin(opacity, 1));
+        same(shade.all.diffuse, (d.diffuse[0] + d.diffuse[1]) / all);
+        same(shade.all.specular, (d.shine[0] + d.shine[1]) / all);
+        for (int half = 0; half < 2; half++)
+            same(shade.halves[half].opacity, fmin(area / PI * d.seen[half] / section, 1));
+    }
+    assert_true(sure > 100);
+}
+
+/* A twig: (19) to (21) with 0 for light of less than none, over the needles' own reflectances. */
+static void test_printed__twig_has_its_terms_where_they_are_no_less_than_none(void **state)
+{
+    (void)state;
+    const double k = 8 / (3 * PI * PI);
+    struct random random = random_seed(4, 1);
+    int dark = 0, sure = 0;
+    for (int i = 0; i < 2000; i++) {
+        struct drawn d = draw(&random);
+        const double a = d.twig.count * d.twig.radius_m / (2 * d.twig.spacing_m), c = cos(d.turn);
+        double eye[2], light[2], diffuse = 0, shine = 0;
+        for (int half = 0; half < 2; half++) {
+            double sign = half ? 1 : -1;
+            eye[half] = between(a * fabs(1 / tan(d.phi) + sign / tan(d.eye_rad)), 1);
+            light[half] = between(a * fabs(1 / tan(d.phi) + sign / tan(d.light_rad)), 1);
+        }
+        double lit[2] = {
+            1 - k * (2 * eye[0] + (1 - c) * light[1] + (3 - c) * light[0]),
+            1 - k * (4 * eye[0] + 2 * eye[1] + (1 + c) * light[1] + (3 + c) * light[0])};
+        struct needles_twig_shade_double shade = needles_paper_twig_shade_double(&d.twig, &d.sight);
+        double all = eye[0] + eye[1];
+        sure += all > 1;
+        same(shade.all.opacity, fmin(all, 1));
+        for (int half = 0; half < 2; half++) {
+            double seen = d.seen[half] > 0 ? between(lit[half], 1) / d.seen[half] : 0;
+            dark += lit[half] < 0;
+            diffuse += d.diffuse[half] * seen * eye[half] / all;
+            shine += d.shine[half] * seen * eye[half] / all;
+            same(shade.halves[half].opacity, fmin(all, 1) * eye[half] / all);
+            same(shade.halves[half].diffuse, d.diffuse[half] * seen);
+            same(shade.halves[half].specular, d.shine[half] * seen);
+        }
+        same(shade.all.diffuse, diffuse);
+        same(shade.all.specular, shine);
+    }
+    assert_true(dark > 100 && sure > 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -209,6 +355,8 @@ int main(void)
         cmocka_unit_test(test_printed__cone_is_lit_as_the_golden_one_but_for_its_faults),
         cmocka_unit_test(test_printed__cone_errs_in_the_mean_by_what_was_measured),
         cmocka_unit_test(test_printed__twig_is_shaded_by_the_ways_of_light_through_its_halves),
+        cmocka_unit_test(test_printed__cone_has_its_terms_over_its_section),
+        cmocka_unit_test(test_printed__twig_has_its_terms_where_they_are_no_less_than_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
