@@ -63,10 +63,10 @@ static void put_best_laws(const struct page *page, const char *side, const struc
     for (int law = 0; law < GROWTH_LAWS; law++)
         if (fits[law].residual <= 1.1 * least)
             words[count++] = growth_word((enum growth_law)law);
-    fprintf(page->out, "%s: ", side);
+    fprintf(page->out, "%s ", side);
     for (int i = 0; i < count; i++)
         fprintf(page->out, "%s<b>%s</b>", i == 0 ? "" : i == count - 1 ? " or " : ", ", words[i]);
-    page_text(page, count > 1 ? ", within a tenth of the least residual. " : ". ");
+    page_text(page, count > 1 ? " alike, within a tenth of the least residual. " : ". ");
 }
 
 /* The laws that the times may grow by, each with its residual: the least is marked. */
@@ -97,9 +97,9 @@ static void put_laws(const struct page *page, const struct paper_block *block)
         }
         page_text(page, "</tr>\n");
     }
-    page_text(page, "</tbody></table></div>\n<p>What fits best: ");
-    put_best_laws(page, "printed", block->printed_fits);
-    put_best_laws(page, "ours", block->fits);
+    page_text(page, "</tbody></table></div>\n<p>");
+    put_best_laws(page, "Printed times are fitted best by", block->printed_fits);
+    put_best_laws(page, "Ours by", block->fits);
     page_text(page, "</p>\n");
 }
 

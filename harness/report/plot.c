@@ -143,6 +143,20 @@ void plot_note(struct plot *plot, double x, double y, const char *text)
     }
 }
 
+void plot_line_note(struct plot *plot, double y, const char *text)
+{
+    double at_y = place_px(&plot->y, y, area_height_px);
+    if (plot->boxes_count < sizeof plot->boxes / sizeof *plot->boxes)
+        plot->boxes[plot->boxes_count++] = (struct plot_box){
+            area_width_px - letter_px * (double)strlen(text), area_width_px, at_y, at_y + line_px};
+    fputs("set label 1 ", plot->gp);
+    plot_text(plot->gp, text);
+    fprintf(plot->gp,
+            " at graph 0.99, first %.9g right offset 0,0.5 noenhanced font \",10\" textcolor rgb "
+            "\"#%06x\"\n",
+            y, tint_rgb(TINT_MUTED));
+}
+
 static void put_terminals(struct plot *plot)
 {
     const char *name = plot->name;

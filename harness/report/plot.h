@@ -41,6 +41,8 @@ void plot_keep_clear(struct plot *plot, double x, double y);
 /* A small text beside a point, where it covers nothing; left out when there is no such place, and
  * in the narrow version. Call before the first curve. */
 void plot_note(struct plot *plot, double x, double y, const char *text);
+/* A small text at the right end of a level line, over it; no later note may cover it. */
+void plot_line_note(struct plot *plot, double y, const char *text);
 /* Nothing to draw after all. */
 void plot_discard(struct plot *plot);
 /* Writes data and script; the figure gets its name and title. */

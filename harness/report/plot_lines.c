@@ -18,6 +18,15 @@ static int plot_variant(const struct book *book, size_t series)
     return before;
 }
 
+/* The method's symbol filled, then open, then crosses, which tell more variants apart than dashes
+ * between points that are near each other. */
+static int variant_symbol(const struct book *book, size_t method, int variant)
+{
+    static const int crosses[] = {2, 3, 1};
+    int place = variant % 5;
+    return place < 2 ? symbol_gnuplot(book, method, place == 0) : crosses[place - 2];
+}
+
 void plot_row_line(struct plot *plot, const struct row *row, int block)
 {
     const struct book *book = plot->book;
@@ -27,7 +36,7 @@ void plot_row_line(struct plot *plot, const struct row *row, int block)
         plot->gp,
         "\"%s.dat\" index %d with linespoints pointtype %d pointsize 0.8 linewidth 1.2 dashtype "
         "%d linecolor rgb \"#%06x\" title ",
-        plot->name, block, symbol_gnuplot(book, row->method_index, variant == 0), 1 + variant % 5,
+        plot->name, block, variant_symbol(book, row->method_index, variant), 1 + variant % 5,
         tint_rgb(tint_method(book, row->method_index)));
     plot_text(plot->gp, row->label);
     plot->key_rows++;
@@ -51,7 +60,7 @@ static void growth_series(struct plot *plot, const struct law *law, int variant)
     fprintf(plot->gp,
             "\"%s.dat\" index %d with yerrorbars pointtype %d pointsize 0.9 linewidth 1 "
             "linecolor rgb \"#%06x\" notitle",
-            plot->name, block, symbol_gnuplot(book, method, variant == 0), color);
+            plot->name, block, variant_symbol(book, method, variant), color);
     if (law->is_fitted) {
         block = plot_block(plot, "its power law");
         for (int end = 0; end < 2; end++) {
@@ -64,7 +73,7 @@ static void growth_series(struct plot *plot, const struct law *law, int variant)
             "\"%s.dat\" index %d using 1:2 with lines linewidth 1.3 dashtype %d linecolor rgb "
             "\"#%06x\" notitle, \\\n    keyentry with linespoints pointtype %d pointsize 0.9 "
             "linewidth 1.3 dashtype %d linecolor rgb \"#%06x\" title ",
-            plot->name, block, 1 + variant % 5, color, symbol_gnuplot(book, method, variant == 0),
+            plot->name, block, 1 + variant % 5, color, variant_symbol(book, method, variant),
             1 + variant % 5, color);
     const char *title = book->series[series];
     if (law->is_fitted)

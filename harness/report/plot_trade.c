@@ -158,9 +158,10 @@ static void trade_lines(struct trade *trade)
     if (!isnan(trade->noise))
         fprintf(gp,
                 "set arrow 1 from graph 0, first %.9g to graph 1, first %.9g nohead dashtype 3 "
-                "linecolor rgb \"#%06x\"\nset label 1 \"noise of the reference\" at graph 0.99, "
-                "first %.9g right offset 0,0.5 font \",10\" textcolor rgb \"#%06x\"\n",
-                trade->noise, trade->noise, muted, trade->noise, muted);
+                "linecolor rgb \"#%06x\"\n",
+                trade->noise, trade->noise, muted);
+    if (!isnan(trade->noise))
+        plot_line_note(&trade->plot, trade->noise, "noise of the reference");
     if (!isnan(trade->floor_ms))
         fprintf(gp,
                 "set arrow 2 from first %.9g, graph 0 to first %.9g, graph 1 nohead dashtype 3 "
