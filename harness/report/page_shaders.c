@@ -29,7 +29,8 @@ void page_shaders(const struct page *page)
                            &bytes, &size, &error);
     page_text(page,
               "<h2 id=\"shaders\">Errors of the shaders of needles</h2>\n<p>What a twig of needles "
-              "hides and how bright it is, by the formulas as the paper prints them and by the "
+              "hides, how bright it is and how it shines, by the formulas as the paper prints them "
+              "and by the "
               "exact ones, against converged quadrature: over the angle of the eye to the twig, "
               "that of the needles to it, and three densities (needles' width over their "
               "distance). No cell was measured for it.</p>\n");
@@ -40,8 +41,8 @@ void page_shaders(const struct page *page)
         return;
     }
     page_text(page,
-              "<figure class=\"figure\"><img style=\"max-width:100%;height:auto\" alt=\"twelve "
-              "maps of relative error: opacity and brightness, paper and exact, at three "
+              "<figure class=\"figure\"><img style=\"max-width:100%;height:auto\" alt=\"eighteen "
+              "maps of relative error: opacity, brightness, shine, paper and exact, at three "
               "densities\" src=\"data:image/png;base64,");
     picture_base64((const uint8_t *)bytes, size, page->out);
     page_text(page,

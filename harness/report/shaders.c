@@ -18,11 +18,14 @@ enum { LINES = 120, PLACES = 120, PANELS = 8 };
 static const double densities[] = {0.1, 0.4, 1.2};
 enum { DENSITIES_COUNT = sizeof densities / sizeof *densities };
 
+/* Of all that is seen, what is hidden and how it shines: opacity times the means of N.L and of
+ * (N.H)^n, shadows in both. */
 struct point {
-    double opacity, light; /* light: opacity times mean N.L of what is seen, shadows in it */
+    double opacity, light, shine;
 };
+static const double exponent = 20;
 
-/* F, D of many nodes. */
+/* F, D, S of many nodes. */
 static struct needles_sums_double fine_sums(const struct needles_twig_double *twig,
                                             const struct needles_sight_double *sight)
 {
@@ -73,8 +76,12 @@ static struct point truth_of(const struct needles_twig_double *twig,
     double seen[2], lit[2];
     fine_lit(&disc, seen, lit);
     struct needles_sums_double sums = fine_sums(twig, sight);
-    return (struct point){seen[0] + seen[1], lit[0] * sums.diffuse[0] / sums.seen[0] +
-                                                 lit[1] * sums.diffuse[1] / sums.seen[1]};
+    struct point point = {seen[0] + seen[1], 0, 0};
+    for (int half = 0; half < 2; half++) {
+        point.light += lit[half] * sums.diffuse[half] / sums.seen[half];
+        point.shine += lit[half] * sums.specular[half] / sums.seen[half];
+    }
+    return point;
 }
 
 static void write_point(FILE *out, double density, int phi_deg, int eye_deg)
@@ -84,21 +91,24 @@ static void write_point(FILE *out, double density, int phi_deg, int eye_deg)
     const double light[3] = {sin(PI / 3) * cos(1), sin(PI / 3) * sin(1), cos(PI / 3)};
     struct needles_twig_double twig =
         needles_twig_of_double(phi, needles, 1, radius, 2 * needles * radius / (PI * density));
-    struct needles_sight_double sight = needles_sight_of_double(light, eye, -1, false);
+    struct needles_sight_double sight = needles_sight_of_double(light, eye, exponent, false);
     struct point truth = truth_of(&twig, &sight, density);
-    struct needles_twig_shade_double exact = needles_twig_shade_double(&twig, &sight, true);
-    struct needles_twig_shade_double paper = needles_paper_twig_shade_double(&twig, &sight);
-    fprintf(out, "%d %d %.6g %.6g %.6g %.6g %.6g %.6g\n", eye_deg, phi_deg, truth.opacity,
-            truth.light, exact.all.opacity, exact.all.opacity * exact.all.diffuse,
-            paper.all.opacity, paper.all.opacity * paper.all.diffuse);
+    const struct needles_shade_double shades[2] = {
+        needles_twig_shade_double(&twig, &sight, true).all,
+        needles_paper_twig_shade_double(&twig, &sight).all};
+    fprintf(out, "%d %d %.6g %.6g %.6g", eye_deg, phi_deg, truth.opacity, truth.light, truth.shine);
+    for (int i = 0; i < 2; i++)
+        fprintf(out, " %.6g %.6g %.6g", shades[i].opacity, shades[i].opacity * shades[i].diffuse,
+                shades[i].opacity * shades[i].specular);
+    fputc('\n', out);
 }
 
 static void write_data(FILE *out)
 {
     fputs(
         "# Twigs of regular cones, light at 60 degrees to the twig and 57 around it from the eye.\n"
-        "# degrees of eye and of needles to the twig; opacity and brightness: converged, exact, "
-        "paper\n",
+        "# degrees of eye and of needles to the twig; opacity, brightness and shine of an exponent "
+        "of 20: converged, exact, paper\n",
         out);
     for (int d = 0; d < DENSITIES_COUNT; d++) {
         fprintf(out, "%s# density A R/dh = %g\n", d ? "\n\n" : "", densities[d]);
@@ -113,24 +123,25 @@ static void write_script(FILE *out)
     static const struct {
         const char *title;
         int value, truth;
-    } columns[] = {{"opacity, paper", 7, 3},
-                   {"opacity, exact", 5, 3},
-                   {"brightness, paper", 8, 4},
-                   {"brightness, exact", 6, 4}};
+        double least; /* below it errors are of it */
+    } columns[] = {{"opacity, paper", 9, 3, 0.01},     {"opacity, exact", 6, 3, 0.01},
+                   {"brightness, paper", 10, 4, 0.01}, {"brightness, exact", 7, 4, 0.01},
+                   {"shine, paper", 11, 5, 0.001},     {"shine, exact", 8, 5, 0.001}};
+    enum { COLUMNS = sizeof columns / sizeof *columns };
     fputs("# Error maps of the shaders of needles. Draws it again: gnuplot shaders.gp\n"
-          "set terminal pngcairo size 1500,900 font 'sans,11'\nset output 'shaders.png'\n"
+          "set terminal pngcairo size 1800,900 font 'sans,11'\nset output 'shaders.png'\n"
           "set palette defined (0 '#f7f7f7', 1 '#c6dbef', 2 '#6baed6', 3 '#2171b5', 4 '#08306b')\n"
           "set logscale cb\nset cbrange [0.001:1]\nset format cb '%g'\nunset key\nset tics out "
           "nomirror\n"
           "set xrange [4:176]\nset yrange [4:88]\nset xtics 45\nset ytics 30\n"
-          "off(x, t) = abs(x - t) / (t > 0.01 ? t : 0.01)\n"
+          "off(x, t, least) = abs(x - t) / (t > least ? t : least)\n"
           "shown(e) = e < 0.001 ? 0.001 : e > 1 ? 1 : e\n"
-          "set multiplot layout 3,4 margins 0.1,0.9,0.08,0.9 spacing 0.02,0.06 title "
+          "set multiplot layout 3,6 margins 0.08,0.92,0.08,0.9 spacing 0.015,0.06 title "
           "'Relative error of the light of twigs of needles, against converged quadrature'\n"
-          "set colorbox user origin 0.93,0.15 size 0.015,0.65\nset cblabel 'relative error'\n",
+          "set colorbox user origin 0.94,0.15 size 0.015,0.65\nset cblabel 'relative error'\n",
           out);
     for (int d = 0; d < DENSITIES_COUNT; d++)
-        for (int c = 0; c < 4; c++) {
+        for (int c = 0; c < COLUMNS; c++) {
             fprintf(out, "set title '%s' offset 0,-0.6\n", d ? "" : columns[c].title);
             fprintf(out, "set xlabel '%s' offset 0,0.4\nset format x '%s'\n",
                     d == DENSITIES_COUNT - 1 ? "eye to twig [degrees]" : "",
@@ -143,8 +154,8 @@ static void write_script(FILE *out)
                         "set ylabel \"density %g\\nneedles to twig [degrees]\" offset -2.5,0\n",
                         densities[d]);
             fprintf(out,
-                    "plot 'shaders.dat' index %d using 1:2:(shown(off($%d, $%d))) with image\n", d,
-                    columns[c].value, columns[c].truth);
+                    "plot 'shaders.dat' index %d using 1:2:(shown(off($%d, $%d, %g))) with image\n",
+                    d, columns[c].value, columns[c].truth, columns[c].least);
             if (d == 0 && c == 0)
                 fputs("unset colorbox\n", out);
         }
