@@ -513,6 +513,48 @@ static void test_papers__a_law_is_judged_by_its_residuals(void **state)
     }
 }
 
+/* Both ways of conifers in both tables: four blocks, two variants. */
+static void test_papers__a_variant_has_one_number_in_all_tables(void **state)
+{
+    static const char *const options[] = {"", "path=naive,shaders=paper"};
+    static const struct {
+        const char *scene;
+        size_t trees;
+    } cells[] = {{"pine-16-8-16", 1}, {"pine-16-8-20", 1}, {"pines", 36}, {"pines", 40}};
+    struct error error = {0};
+    struct paper paper;
+    if (paper_read(*state, "reports/papers/hattab-babahenini-djedi.json", &paper, &error))
+        fail_msg("%s", error.text);
+    struct run *run = make_run(*state, "x", ROUNDS);
+    run->results_count = 0;
+    for (size_t i = 0; i < 8; i++) {
+        const struct kind kind = {.scene = cells[i / 2].scene,
+                                  .method = "conifers",
+                                  .options = options[(i + (i > 3)) % 2],
+                                  .trees = cells[i / 2].trees,
+                                  .lod = LOD_AUTO,
+                                  .rate = 1,
+                                  .wobble = 1.01};
+        add(*state, run, &kind, ROUNDS);
+    }
+    size_t count, firsts = 0;
+    struct paper_beside *beside = papers_beside(book_make(*state, run), &paper, 1, &count);
+    assert_int_equal(beside->blocks_count, 4);
+    for (size_t b = 0; b < 4; b++) {
+        bool is_first, other_first;
+        size_t number = paper_variant_number(*state, beside, b, &is_first);
+        assert_true(number < 2);
+        firsts += is_first;
+        for (size_t k = 0; k < b; k++) {
+            bool alike = strcmp(beside->blocks[k].example->seen->cell.options,
+                                beside->blocks[b].example->seen->cell.options) == 0;
+            assert_int_equal(alike,
+                             paper_variant_number(*state, beside, k, &other_first) == number);
+        }
+    }
+    assert_int_equal(firsts, 2);
+}
+
 static void test_papers__bad_files_are_refused_by_one_clear_line(void **state)
 {
     (void)state;
@@ -618,6 +660,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(test_papers__a_variant_of_one_printed_row_has_no_table),
         cmocka_unit_test(test_papers__worst_and_best_are_the_slowest_and_fastest_frames),
         cmocka_unit_test(test_papers__a_law_is_judged_by_its_residuals),
+        cmocka_unit_test(test_papers__a_variant_has_one_number_in_all_tables),
         cmocka_unit_test(test_papers__claims_without_tables_stand_beside_a_run_that_decides_one),
         cmocka_unit_test(test_papers__bad_files_are_refused_by_one_clear_line),
         cmocka_unit_test(test_papers__files_of_this_project_are_read_and_their_scenes_exist),
