@@ -6,14 +6,14 @@
 
 #include <string.h>
 
-static void put(const char *path, const void *bytes, size_t size)
+static inline void put(const char *path, const void *bytes, size_t size)
 {
     struct error error = {0};
     if (file_write(path, bytes, size, &error) != STATUS_OK)
         fail_msg("%s", error.text);
 }
 
-static void put_text(const char *path, const char *text)
+static inline void put_text(const char *path, const char *text)
 {
     put(path, text, strlen(text));
 }
@@ -23,21 +23,21 @@ struct bytes {
     size_t size;
 };
 
-static void add(struct bytes *bytes, const void *from, size_t size)
+static inline void add(struct bytes *bytes, const void *from, size_t size)
 {
     assert_true(bytes->size + size <= sizeof bytes->at);
     memcpy(bytes->at + bytes->size, from, size);
     bytes->size += size;
 }
 
-static void add_u32_big(struct bytes *bytes, uint32_t x)
+static inline void add_u32_big(struct bytes *bytes, uint32_t x)
 {
     unsigned char b[4] = {(unsigned char)(x >> 24), (unsigned char)(x >> 16),
                           (unsigned char)(x >> 8), (unsigned char)x};
     add(bytes, b, 4);
 }
 
-static uint32_t crc32_of(const unsigned char *bytes, size_t size)
+static inline uint32_t crc32_of(const unsigned char *bytes, size_t size)
 {
     uint32_t crc = 0xffffffff;
     for (size_t i = 0; i < size; i++) {
@@ -48,7 +48,7 @@ static uint32_t crc32_of(const unsigned char *bytes, size_t size)
     return ~crc;
 }
 
-static void add_chunk(struct bytes *png, const char *type, const void *data, size_t size)
+static inline void add_chunk(struct bytes *png, const char *type, const void *data, size_t size)
 {
     add_u32_big(png, (uint32_t)size);
     size_t start = png->size;
@@ -58,7 +58,7 @@ static void add_chunk(struct bytes *png, const char *type, const void *data, siz
 }
 
 /* A PNG of 8-bit RGBA texels, row 0 on top: one stored (uncompressed) deflate block. */
-static struct bytes *png_of(const unsigned char *rgba, uint32_t width, uint32_t height)
+static inline struct bytes *png_of(const unsigned char *rgba, uint32_t width, uint32_t height)
 {
     static struct bytes png, raw, header, stream;
     png.size = raw.size = header.size = stream.size = 0;
@@ -95,12 +95,12 @@ static struct bytes *png_of(const unsigned char *rgba, uint32_t width, uint32_t 
 static const unsigned char leaf_texels[16] = {0,   255, 0,   255, 255, 0, 0, 255,
                                               188, 188, 188, 255, 0,   0, 0, 0};
 
-static struct bytes *leaf_png(void)
+static inline struct bytes *leaf_png(void)
 {
     return png_of(leaf_texels, 2, 2);
 }
 
-static const char *base64(const struct bytes *bytes)
+static inline const char *base64(const struct bytes *bytes)
 {
     static char text[90000];
     const char *letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
