@@ -189,6 +189,42 @@ static void test_billboards__a_stretched_tree_covers_the_references_pixels(void 
     }
 }
 
+/* The picture is the one that is nearest to where the eye is for the plant. Of 4 x 4 pictures of
+ * the hemisphere, seen along +z, the next is nearer from tan(elevation) = 1/2 on, for a tree that
+ * is r times as high as what it has pictures of from r/2 on; a turn within one picture changes
+ * little. */
+static void test_billboards__a_stretched_tree_shows_its_picture_from_where_the_eye_is(void **state)
+{
+    (void)state;
+    static const float between[] = {1.08f, 0.925f}; /* of the step that has pictures of the plant */
+    static const char options[] = "layout=hemisphere,views=16,alpha=blend,resolution=64,near=0";
+    for (int k = 0; k < 2; k++) {
+        struct arena *arena = arena_create(0);
+        struct plant *plant = plant_from_mesh(arena, "lopsided", tree_mesh(arena, 400));
+        struct scene *scene = tree_scene(arena, plant, 1, 1);
+        struct studio studio;
+        double changes[2];
+        scene->instances[0].stretch = between[k];
+        scene->instances[0].position_m[1] = 3.5f * (1 - between[k]);
+        studio_open(&studio, arena, tree_method("billboards"), options, LOD_HIGH, scene, 0);
+        for (int own = 0; own < 2; own++) {
+            struct frame *frames[2];
+            for (int i = 0; i < 2; i++) {
+                float rise = 0.5f * (own ? between[k] : 1) * (i ? 1.02f : 0.98f);
+                struct view view = tree_view(scene, 0, atanf(rise), 300, 9);
+                frames[i] = studio_draw(&studio, &view);
+            }
+            changes[own] = tree_difference(frames[0], frames[1], false);
+        }
+        studio_close(&studio);
+        if (!(changes[1] > 0.01 && changes[1] > 10 * changes[0]))
+            fail_msg(
+                "stretch %g: coverage changes by %g at the plant's border, by %g at the world's",
+                (double)between[k], changes[1], changes[0]);
+        arena_destroy(arena);
+    }
+}
+
 /* ---- Their shadows. ---- */
 
 enum { BOX_PX = 4, BOXES = TREE_WIDTH / BOX_PX };
@@ -251,6 +287,7 @@ int main(void)
         cmocka_unit_test(test_ray_texels__the_shadow_of_a_stretched_tree_is_as_traced),
         cmocka_unit_test(test_reference__a_stretched_ball_is_lit_as_its_ellipsoid),
         cmocka_unit_test(test_billboards__a_stretched_tree_covers_the_references_pixels),
+        cmocka_unit_test(test_billboards__a_stretched_tree_shows_its_picture_from_where_the_eye_is),
         cmocka_unit_test(test_methods__a_stretched_ball_is_lit_as_its_ellipsoid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
