@@ -36,7 +36,8 @@ static const struct option table[] = {
            "trees nearer to the eye are drawn by their triangles; 0: none"),
     OPTION(struct options, oblique, 1, 0, 1, "",
            "slices seen at a slant hide as much as the longer way through them"),
-    OPTION(struct options, smooth, 0, 0, 1, "", "trees turn into their triangles gradually"),
+    OPTION(struct options, smooth, 0, 0, 1, "",
+           "numbers of slices change gradually, and trees turn into their triangles so"),
     OPTION_END,
 };
 /* clang-format on */
@@ -120,6 +121,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .oblique = options->oblique,
         .near_radii = options->near,
         .near_octaves = options->smooth ? STACK_NEAR_OCTAVES : 0,
+        .smooth = options->smooth,
         .mix = options->order ? STACK_CROSSED : STACK_MIXED,
         .above = options->above,
         .criterion_px = options->criterion,

@@ -57,13 +57,10 @@ static void test_jakulin__a_plant_of_bark_alone_is_drawn_as_polygons_draw_it(voi
     assert_memory_equal(drawn->rgba, truth->rgba, 4 * TREE_PIXELS * sizeof(float));
 }
 
-/* Two stacks side by side change places as the eye turns; no step may stand out. Without the trunk:
- * with one sample a pixel its own edges jump. */
-static void test_jakulin__turning_around_a_crown_and_rising_above_it_never_jump(void **state)
+/* Without its trunk: with one sample a pixel that one's own edges jump. */
+static struct plant *crown_alone(struct arena *arena)
 {
-    enum { STEPS = 24 };
-    struct fixture *f = *state;
-    struct mesh *mesh = tree_mesh(f->arena, 400);
+    struct mesh *mesh = tree_mesh(arena, 400);
     uint32_t bark = mesh->parts[0].triangles_count;
     mesh->triangles += bark;
     mesh->triangles_count -= bark;
@@ -72,8 +69,15 @@ static void test_jakulin__turning_around_a_crown_and_rising_above_it_never_jump(
     mesh->parts[0].first_triangle = 0;
     for (uint32_t i = 0; i <= mesh->parts[0].elements_count; i++)
         mesh->parts[0].element_first[i] -= bark;
-    struct plant *crown = plant_from_mesh(f->arena, "crown", mesh);
-    struct scene *scene = tree_scene(f->arena, crown, 1, 1);
+    return plant_from_mesh(arena, "crown", mesh);
+}
+
+/* Two stacks side by side change places as the eye turns; no step may stand out. */
+static void test_jakulin__turning_around_a_crown_and_rising_above_it_never_jump(void **state)
+{
+    enum { STEPS = 24 };
+    struct fixture *f = *state;
+    struct scene *scene = tree_scene(f->arena, crown_alone(f->arena), 1, 1);
     struct studio studio;
     studio_open(&studio, f->arena, f->method, "", LOD_HIGH, scene, lit);
     for (int rising = 0; rising < 2; rising++) {
@@ -299,6 +303,36 @@ static void test_jakulin__only_in_exact_order_the_front_hides_the_back(void **st
     }
 }
 
+/* The camera goes round a crown, away from one of the directions, and asks for more slices all the
+ * way. */
+static void test_jakulin__smooth_numbers_of_slices_do_not_jump(void **state)
+{
+    enum { STEPS = 48 };
+    static const char *const orders[2] = {"mixed", "exact"};
+    struct fixture *f = *state;
+    struct scene *scene = tree_scene(f->arena, crown_alone(f->arena), 1, 1);
+    for (int order = 0; order < 2; order++) {
+        double worst[2] = {0, 0};
+        for (int smooth = 0; smooth < 2; smooth++) {
+            struct studio studio;
+            struct frame *last = NULL;
+            const char *options = arena_printf(
+                f->arena, "resolution=64,criterion=1,order=%s,smooth=%d", orders[order], smooth);
+            studio_open(&studio, f->arena, f->method, options, LOD_AUTO, scene, lit);
+            for (int step = 0; step <= STEPS; step++) {
+                struct view view = tree_view(scene, 0.05f + 0.004f * (float)step, 0, 300, 14);
+                struct frame *drawn = studio_draw(&studio, &view);
+                worst[smooth] = fmax(worst[smooth], last ? tree_rmse(last, drawn) : 0);
+                last = drawn;
+            }
+            studio_close(&studio);
+        }
+        if (!(worst[1] > 0 && worst[1] < 0.7 * worst[0]))
+            fail_msg("order %s: the picture changes by %g at a time, smoothly by %g", orders[order],
+                     worst[0], worst[1]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -308,6 +342,7 @@ int main(void)
         cmocka_unit_test(test_jakulin__turning_around_a_crown_and_rising_above_it_never_jump),
         cmocka_unit_test(test_jakulin__every_ray_meets_crossing_slices_once_and_from_far_to_near),
         cmocka_unit_test(test_jakulin__only_in_exact_order_the_front_hides_the_back),
+        cmocka_unit_test(test_jakulin__smooth_numbers_of_slices_do_not_jump),
     };
     return cmocka_run_group_tests_name("jakulin", tests, open_fixture, close_fixture);
 }

@@ -140,12 +140,43 @@ struct fill {
     size_t parts, quads;
 };
 
+/* The levels that replace others, behind those that they replace; returns how many the latter are.
+ * Either have at most one part of a side, and keep their order. */
+static int levels_apart(struct stack_part *parts, int count)
+{
+    struct stack_part later[PARTS_MOST];
+    int first = 0, second = 0;
+    for (int k = 0; k < count; k++)
+        if (k > 0 && parts[k].side == parts[k - 1].side)
+            later[second++] = parts[k];
+        else
+            parts[first++] = parts[k];
+    memcpy(parts + first, later, (size_t)second * sizeof *later);
+    return first;
+}
+
+/* Quads of parts that cross. Where numbers of slices change, each number is in order by itself. */
+static struct fill fill_crossed(const struct stack *stack, const struct stack_part *parts,
+                                int count, int apart, struct fill fill)
+{
+    for (int set = 0; set < 2; set++) {
+        int first = set ? apart : 0, some = set ? count - apart : apart;
+        if (some > 0)
+            fill.quads += stack_crossed_quads(stack, parts + first, some, &stack->trees[fill.parts],
+                                              (uint32_t)fill.parts, stack->quads + fill.quads);
+        fill.parts += (size_t)some;
+    }
+    return fill;
+}
+
 /* One tree at the end of the batch, its farthest quad first. */
 static struct fill fill_behind(const struct stack *stack, const struct view *view, enum lod lod,
                                const struct instance *instance, struct fill fill)
 {
     struct stack_part parts[PARTS_MOST];
+    const bool crossed = stack->request.mix == STACK_CROSSED;
     int count = stack_parts(stack, view, lod, instance, parts);
+    int apart = crossed ? levels_apart(parts, count) : 0;
     const size_t number = (size_t)(instance - stack->scene->instances);
     const float near = (stack->distant ? 1 - distant_share(stack->distant, number) : 1) *
                        (1 - nearby_share(stack->nearby, (uint32_t)number));
@@ -156,12 +187,8 @@ static struct fill fill_behind(const struct stack *stack, const struct view *vie
         if (stack->bends)
             stack_bend_fill(stack, instance, tree, &stack->bends[fill.parts + (size_t)k]);
     }
-    if (stack->request.mix == STACK_CROSSED) {
-        fill.quads += stack_crossed_quads(stack, parts, count, &stack->trees[fill.parts],
-                                          (uint32_t)fill.parts, stack->quads + fill.quads);
-        fill.parts += (size_t)count;
-        return fill;
-    }
+    if (crossed)
+        return fill_crossed(stack, parts, count, apart, fill);
     for (int first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && parts[end].side == parts[first].side;)
             end++;

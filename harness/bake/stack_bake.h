@@ -63,7 +63,7 @@ struct stack_part {
 };
 
 /* The parts of a tree, at most PARTS_MOST; those of a side follow each other. */
-enum { PARTS_MOST = 4 };
+enum { PARTS_MOST = 6 };
 int stack_parts(const struct stack *stack, const struct view *view, enum lod lod,
                 const struct instance *instance, struct stack_part *parts);
 
@@ -88,8 +88,8 @@ bool stack_quad_at(const struct stack *stack, const struct stack_part *part,
 
 /* Quads of a tree of one or two vertical parts and, last, perhaps a horizontal one, farthest first:
  * slices are cut where they meet those of a later part. At most STACK_CROSSED_MOST, as long as no
- * part has more than STACK_CROSSED_SLICES. */
-enum { STACK_CROSSED_SLICES = 32, STACK_CROSSED_MOST = 36 * 1024 };
+ * part has more than STACK_CROSSED_SLICES; and so many with another such set of half as many. */
+enum { STACK_CROSSED_SLICES = 32, STACK_CROSSED_MOST = 41 * 1024 };
 size_t stack_crossed_quads(const struct stack *stack, const struct stack_part *parts, int count,
                            const struct stack_tree *trees, uint32_t first_tree,
                            struct stack_quad *quads);
