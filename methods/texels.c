@@ -51,6 +51,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     struct stack_request request = stack_axes_request(&options->axes);
     if (options->source > 0) {
         request.bake.count = options->axes.resolution;
+        request.bake.directions_count = 3;
         request.bake.views = (size_t)options->views;
         request.bake.binary = options->source == 2;
         request.square = true;

@@ -1,5 +1,5 @@
-/* Stacks along the three axes, as Meyer and Neyret 1998 have them: the options that methods of them
- * share, and what is requested by them. */
+/* Stacks along the three axes, as Meyer and Neyret 1998 have them, or more directions: the options
+ * that methods of them share, and what is requested by them. */
 #ifndef TREELINE_BAKE_STACK_AXES_H
 #define TREELINE_BAKE_STACK_AXES_H
 
@@ -7,7 +7,7 @@
 
 struct stack_axes {
     int path; /* enum stack_path */
-    int slices, resolution, cut, samples, filter;
+    int slices, resolution, directions, cut, samples, filter;
     float texel, near, distant;
     bool oblique, interpolate, smooth;
     struct shadow_choice sun;
@@ -20,7 +20,9 @@ enum stack_path { STACK_NAIVE, STACK_FAST };
 #define STACK_AXES_OPTIONS(type)                                                                   \
     OPTION_WORD_IN(type, axes, path, 1, "naive|fast",                                              \
         "naive: as published, every slice a whole trilinear quad, a draw a tree"),                 \
-    OPTION_IN(type, axes, slices, 64, 1, 512, "", "slices along each of the three directions"),    \
+    OPTION_IN(type, axes, slices, 64, 1, 512, "", "slices along each of the directions"),          \
+    OPTION_WORD_IN(type, axes, directions, 0, "3|7|13",                                            \
+        "of slices: the axes; also a cube's diagonals; also those of its faces; of volumes the axes alone"), \
     OPTION_IN(type, axes, resolution, 128, 8, 512, "px", "texels along a picture's longer side"),  \
     OPTION_WORD_IN(type, axes, cut, 1, "clip|centroid",                                            \
         "leaves are cut by the slabs, or lie whole in that of their centroid"),                    \
