@@ -3,167 +3,12 @@
  *
  * Rays that meet the tree's box are taken from a queue as lanes get free, so that lanes stay busy
  * though rays end at different steps. Steps only find voxels; these wait in a second queue until
- * they fill all lanes, and only then it is known how much they hide. A ray may so go on for a few
- * steps behind what closes it: what it finds there hides nothing. */
+ * there are many, and only then it is known how much they hide. A ray may so go on for a few steps
+ * behind what closes it: what it finds there hides nothing. */
 #ifndef TREELINE_BAKE_MARCH_KERNEL_H
 #define TREELINE_BAKE_MARCH_KERNEL_H
 
-#include "bake/march_shade.h"
-
-enum { SETS = 3, FRESH_MAX = 64, MET_MAX = 256 };
-
-/* Rays to come. LANES of room on both sides. */
-struct lanes_fresh {
-    int first, last;                     /* in the arrays */
-    int column, row;                     /* of the next to be looked at */
-    int32_t keys[FRESH_MAX + 2 * LANES]; /* of pixels: row x stride + column */
-    float at_m[FRESH_MAX + 2 * LANES], end_m[FRESH_MAX + 2 * LANES];
-};
-
-/* Voxels that rays have met. */
-struct lanes_met {
-    int first, last; /* in the arrays */
-    int32_t keys[MET_MAX + LANES], voxels[MET_MAX + LANES];
-    float lengths_m[MET_MAX + LANES];
-    float middles_m[MET_MAX + LANES]; /* where the sun has shadows */
-};
-
-/* LANES rays under way: from at to end along the view, m. */
-struct lanes_rays {
-    lanes ray[3], at, end;
-    lanes_int key;
-};
-
-struct lanes_march {
-    const struct march_job *job;
-    const struct march_rect *rect;
-    struct march_rays *rays;
-    /* The job's, in all lanes. leap: along no ray a voxel's side is shorter. */
-    lanes eye[3], most[3], step_m, leap_m;
-    lanes_int size[2];
-    float row_per_key;
-    int closed;
-    void (*take)(struct lanes_march *march, int first); /* LANES voxels of met */
-    struct lanes_fresh fresh;
-    struct lanes_met met;
-    struct lanes_rays on[SETS];
-};
-
-static inline lanes_int lanes_numbers(void)
-{
-    lanes_int numbers;
-    static const int32_t all[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    memcpy(&numbers, all, sizeof numbers);
-    return numbers;
-}
-
-static inline lanes_int lanes_int_load(const int32_t *from)
-{
-    lanes_int loaded;
-    memcpy(&loaded, from, sizeof loaded);
-    return loaded;
-}
-
-static inline void lanes_int_store(int32_t *to, lanes_int value)
-{
-    memcpy(to, &value, sizeof value);
-}
-
-static inline void rays_of(const struct march_job *job, lanes column, lanes row, lanes ray[3])
-{
-    for (int i = 0; i < 3; i++)
-        ray[i] = job->first[i] + row * job->down[i] + column * job->right[i];
-}
-
-/* Those of pixels. */
-static inline void rays_of_keys(const struct lanes_march *march, lanes_int keys, lanes ray[3])
-{
-    lanes key = lanes_of(keys), row = lanes_of(lanes_truncate((key + 0.5f) * march->row_per_key));
-    rays_of(march->job, key - row * (float)march->rays->stride, row, ray);
-}
-
-/* Where rays enter and leave the level's box. */
-static inline void box_cut(const struct march_job *job, const lanes ray[3], lanes *from, lanes *to)
-{
-    for (int i = 0; i < 3; i++) {
-        lanes slow =
-            lanes_pick(lanes_less(ray[i] * ray[i], lanes_all(1e-20f)), lanes_all(1e-10f), ray[i]);
-        lanes per = 1 / slow, low = per * -job->eye[i];
-        lanes high = per * ((float)job->size[i] - job->eye[i]);
-        *from = lanes_max(*from, lanes_min(low, high));
-        *to = lanes_min(*to, lanes_max(low, high));
-    }
-}
-
-/* LANES more pixels of a row: those that are open and meet the box. */
-static inline void fresh_run(struct lanes_march *march)
-{
-    const struct march_job *job = march->job;
-    struct lanes_fresh *fresh = &march->fresh;
-    const int key = fresh->row * march->rays->stride + fresh->column;
-    lanes_int numbers = lanes_numbers(), columns = numbers + fresh->column;
-    lanes_mask open =
-        lanes_both(lanes_int_less(columns, (lanes_int){0} + (march->rect->high[0] + 1)),
-                   lanes_less(lanes_all(job->stop), lanes_load(march->rays->left + key)));
-    if (lanes_any(open)) {
-        lanes ray[3], at = lanes_all(job->near_m);
-        lanes end = lanes_min(lanes_load(march->rays->depths_m + key), lanes_all(job->far_m));
-        rays_of(job, lanes_of(columns), lanes_all((float)fresh->row), ray);
-        box_cut(job, ray, &at, &end);
-        lanes_mask meets = lanes_both(lanes_less(at, end), open);
-        lanes_order order = lanes_order_of(meets);
-        lanes_int_store(fresh->keys + fresh->last, lanes_int_squeeze(numbers + key, order));
-        lanes_store(fresh->at_m + fresh->last, lanes_squeeze(at, order));
-        lanes_store(fresh->end_m + fresh->last, lanes_squeeze(end, order));
-        fresh->last += lanes_count(meets);
-    }
-    fresh->column += LANES;
-    if (fresh->column > march->rect->high[0]) {
-        fresh->column = march->rect->low[0];
-        fresh->row++;
-    }
-}
-
-/* Until there are many, or no more. What follows them never begins. */
-static inline void fresh_fill(struct lanes_march *march)
-{
-    struct lanes_fresh *fresh = &march->fresh;
-    const int rest = fresh->last - fresh->first;
-    lanes_int_store(fresh->keys + LANES, lanes_int_load(fresh->keys + fresh->first));
-    lanes_store(fresh->at_m + LANES, lanes_load(fresh->at_m + fresh->first));
-    lanes_store(fresh->end_m + LANES, lanes_load(fresh->end_m + fresh->first));
-    fresh->first = LANES;
-    fresh->last = LANES + rest;
-    while (fresh->row <= march->rect->high[1] && fresh->last <= FRESH_MAX)
-        fresh_run(march);
-    lanes_int_store(fresh->keys + fresh->last, (lanes_int){0});
-    lanes_store(fresh->at_m + fresh->last, lanes_all(0));
-    lanes_store(fresh->end_m + fresh->last, lanes_all(-1));
-}
-
-static inline bool fresh_any(const struct lanes_march *march)
-{
-    return march->fresh.first < march->fresh.last || march->fresh.row <= march->rect->high[1];
-}
-
-/* Lanes whose rays are done get new ones, as far as there are some. */
-static inline void rays_refill(struct lanes_march *march, struct lanes_rays *on)
-{
-    struct lanes_fresh *fresh = &march->fresh;
-    if (fresh->last - fresh->first < LANES && fresh->row <= march->rect->high[1])
-        fresh_fill(march);
-    lanes_mask alive = lanes_less(on->at, on->end);
-    const int kept = lanes_count(alive), from = fresh->first - kept;
-    const int left = fresh->last - fresh->first;
-    lanes_order order = lanes_order_of(alive);
-    lanes_mask is_kept = lanes_int_less(lanes_numbers(), (lanes_int){0} + kept);
-    on->key = lanes_int_pick(is_kept, lanes_int_squeeze(on->key, order),
-                             lanes_int_load(fresh->keys + from));
-    on->at = lanes_pick(is_kept, lanes_squeeze(on->at, order), lanes_load(fresh->at_m + from));
-    on->end = lanes_pick(is_kept, lanes_squeeze(on->end, order), lanes_load(fresh->end_m + from));
-    fresh->first += left < LANES - kept ? left : LANES - kept;
-    rays_of_keys(march, on->key, on->ray);
-}
+#include "bake/march_fresh.h"
 
 static inline lanes_int cells_at(const struct lanes_march *march, const lanes ray[3], lanes middle,
                                  lanes_mask alive)
@@ -202,83 +47,100 @@ rays_step(struct lanes_march *march, struct lanes_rays *on, lanes_mask alive, co
     return count;
 }
 
-/* The shares that voxels hide of what their rays see, one after the other: none where nothing is
- * seen any more. Rays that they close are done. */
-static inline void rays_hide(struct lanes_march *march, const int32_t *keys, const float *pass,
-                             float *shares)
+/* The rays of some keys are done. */
+static inline void rays_close(struct lanes_march *march, const int32_t *keys, int count)
 {
-    const float stop = march->job->stop;
-    float *left = march->rays->left;
-    int32_t closed[LANES + 1];
-    int count = 0;
-    for (int i = 0; i < LANES; i++) {
-        const float before = left[keys[i]];
-        const float share = before > stop ? before - before * pass[i] : 0;
-        const float after = before - share;
-        left[keys[i]] = after;
-        shares[i] = share;
-        closed[count] = keys[i];
-        count += (before > stop) & !(after > stop);
-    }
     march->closed += count;
     for (int i = 0; i < count; i++)
         for (int set = 0; set < SETS; set++) {
             struct lanes_rays *on = &march->on[set];
-            on->end = lanes_pick(lanes_int_same(on->key, (lanes_int){0} + closed[i]), lanes_all(-1),
+            on->end = lanes_pick(lanes_int_same(on->key, (lanes_int){0} + keys[i]), lanes_all(-1),
                                  on->end);
         }
 }
 
-/* LANES voxels hide and shine. */
-static inline __attribute__((always_inline)) void met_take(struct lanes_march *march, int first,
-                                                           const bool shaded, const bool by_mean)
+/* The shares that voxels hide of what their rays see, one after the other: none where nothing is
+ * seen any more. Rays that they close are done. */
+static inline void many_hide(struct lanes_march *march, const int32_t *keys,
+                             struct lanes_many *many)
+{
+    const float stop = march->job->stop;
+    float *left = march->rays->left;
+    int32_t closed[MANY + 1];
+    int count = 0;
+    for (int i = 0; i < MANY; i++) {
+        const float before = left[keys[i]];
+        const float share = before > stop ? before - before * many->pass[i] : 0;
+        const float after = before - share;
+        left[keys[i]] = after;
+        many->shares[i] = share;
+        closed[count] = keys[i];
+        count += (before > stop) & !(after > stop);
+    }
+    rays_close(march, closed, count);
+}
+
+/* MANY voxels hide and shine, set by set of lanes. What one set computes does not wait for another,
+ * so that the processor does several at a time. */
+static inline __attribute__((always_inline)) void many_take(struct lanes_march *march,
+                                                            const bool shaded, const bool by_mean)
 {
     const struct march_job *job = march->job;
     const struct lanes_met *met = &march->met;
-    const struct lanes_voxels voxels = voxels_at(job, lanes_int_load(met->voxels + first), by_mean);
+    const int32_t *keys = met->keys + met->first;
     const float depth_per = job->speed * (1 - job->thinned);
-    float pass[LANES], shares[LANES];
-    lanes_store(pass, lanes_fade(voxels_depth(job, &voxels, by_mean) *
-                                 lanes_load(met->lengths_m + first) * depth_per));
-    rays_hide(march, met->keys + first, pass, shares);
-    lanes place[3], rgb[3];
-    if (shaded) {
-        rays_of_keys(march, lanes_int_load(met->keys + first), place);
-        for (int i = 0; i < 3; i++)
-            place[i] = job->eye[i] + lanes_load(met->middles_m + first) * place[i];
+    struct lanes_many many;
+    for (int set = 0, at = met->first; set < MANY / LANES; set++, at += LANES) {
+        lanes_int words[4];
+        lanes_gather_four(job->voxels, lanes_int_load(met->voxels + at) << 2, words);
+        many.normals[set] = words[2];
+        many.colors[set] = words[3];
+        lanes depth = voxels_depth(job, words, by_mean);
+        lanes_store(many.pass + set * LANES,
+                    lanes_fade(depth * lanes_load(met->lengths_m + at) * depth_per));
     }
-    voxels_shine(job, &voxels, by_mean, shaded ? place : NULL, rgb);
-    lanes share = lanes_load(shares);
-    for (int c = 0; c < 3; c++)
-        rgb[c] = share * (job->fog[c] + job->clear * rgb[c]);
-    lanes_scatter(march->rays->rgb, met->keys + first, rgb);
+    many_hide(march, keys, &many);
+    for (int set = 0, at = 0; set < MANY / LANES; set++, at += LANES) {
+        lanes place[3], rgb[3], share = lanes_load(many.shares + at);
+        if (shaded) {
+            rays_of_keys(march, lanes_int_load(keys + at), place);
+            for (int i = 0; i < 3; i++)
+                place[i] = job->eye[i] + lanes_load(met->middles_m + met->first + at) * place[i];
+        }
+        voxels_shine(job, many.normals[set], many.colors[set], by_mean, shaded ? place : NULL, rgb);
+        for (int c = 0; c < 3; c++)
+            rgb[c] = share * (job->fog[c] + job->clear * rgb[c]);
+        lanes_scatter(march->rays->rgb, keys + at, rgb);
+    }
 }
 
 /* Functions of their own: inlined, they have their constants loaded for each step, used or not. */
-static __attribute__((noinline)) void take_moments(struct lanes_march *march, int first)
+static __attribute__((noinline)) void take_moments(struct lanes_march *march)
 {
-    met_take(march, first, false, false);
+    many_take(march, false, false);
 }
-static __attribute__((noinline)) void take_moments_shaded(struct lanes_march *march, int first)
+static __attribute__((noinline)) void take_moments_shaded(struct lanes_march *march)
 {
-    met_take(march, first, true, false);
+    many_take(march, true, false);
 }
-static __attribute__((noinline)) void take_mean(struct lanes_march *march, int first)
+static __attribute__((noinline)) void take_mean(struct lanes_march *march)
 {
-    met_take(march, first, false, true);
+    many_take(march, false, true);
 }
-static __attribute__((noinline)) void take_mean_shaded(struct lanes_march *march, int first)
+static __attribute__((noinline)) void take_mean_shaded(struct lanes_march *march)
 {
-    met_take(march, first, true, true);
+    many_take(march, true, true);
 }
 
 /* To the arrays' begin. */
 static inline void met_move(struct lanes_met *met)
 {
-    lanes_int_store(met->keys, lanes_int_load(met->keys + met->first));
-    lanes_int_store(met->voxels, lanes_int_load(met->voxels + met->first));
-    lanes_store(met->lengths_m, lanes_load(met->lengths_m + met->first));
-    lanes_store(met->middles_m, lanes_load(met->middles_m + met->first));
+    for (int at = 0; at < MANY; at += LANES) {
+        lanes_int_store(met->keys + at, lanes_int_load(met->keys + met->first + at));
+        lanes_int_store(met->voxels + at, lanes_int_load(met->voxels + met->first + at));
+        lanes_store(met->lengths_m + at, lanes_load(met->lengths_m + met->first + at));
+        lanes_store(met->middles_m + at, lanes_load(met->middles_m + met->first + at));
+    }
     met->last -= met->first;
     met->first = 0;
 }
@@ -286,10 +148,12 @@ static inline void met_move(struct lanes_met *met)
 /* The rest, filled up with what hides nothing. */
 static inline void met_fill(struct lanes_met *met)
 {
-    lanes_int_store(met->keys + met->last, (lanes_int){0} + met->keys[met->first]);
-    lanes_int_store(met->voxels + met->last, (lanes_int){0} + met->voxels[met->first]);
-    lanes_store(met->lengths_m + met->last, lanes_all(0));
-    lanes_store(met->middles_m + met->last, lanes_all(met->middles_m[met->first]));
+    for (int at = 0; at < MANY; at += LANES) {
+        lanes_int_store(met->keys + met->last + at, (lanes_int){0} + met->keys[met->first]);
+        lanes_int_store(met->voxels + met->last + at, (lanes_int){0} + met->voxels[met->first]);
+        lanes_store(met->lengths_m + met->last + at, lanes_all(0));
+        lanes_store(met->middles_m + met->last + at, lanes_all(met->middles_m[met->first]));
+    }
 }
 
 /* Along no ray of the rectangle a voxel's side is shorter: slopes are greatest at its corners. */
@@ -360,14 +224,14 @@ static inline __attribute__((always_inline)) int march_rays_of(const struct marc
             lookups += (shaded ? 5u : 2u) * (unsigned)rays_step(&march, on, alive, shaded);
             any = true;
         }
-        for (; march.met.last - march.met.first >= LANES; march.met.first += LANES)
-            march.take(&march, march.met.first);
+        for (; march.met.last - march.met.first >= MANY; march.met.first += MANY)
+            march.take(&march);
         if (march.met.last > MET_MAX - SETS * LANES)
             met_move(&march.met);
     } while (any);
     if (march.met.first < march.met.last) {
         met_fill(&march.met);
-        march.take(&march, march.met.first);
+        march.take(&march);
     }
     rays->lookups += lookups;
     return march.closed;

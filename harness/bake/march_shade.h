@@ -94,31 +94,17 @@ static inline struct lanes_mean mean_of(const struct march_job *job, lanes_int n
     return mean;
 }
 
-/* Voxels that rays have met, unpacked as far as both what they hide and how they shine want it. */
-struct lanes_voxels {
-    lanes_int words[4];     /* struct voxel */
-    struct lanes_mean mean; /* where normals are known by it */
-};
-
-static inline struct lanes_voxels voxels_at(const struct march_job *job, lanes_int voxel,
-                                            const bool by_mean)
-{
-    struct lanes_voxels met = {0};
-    lanes_gather_four(job->voxels, voxel << 2, met.words);
-    if (by_mean)
-        met.mean = mean_of(job, met.words[2]);
-    return met;
-}
-
-/* Optical depth of a voxel's side along the ray. */
-static inline lanes voxels_depth(const struct march_job *job, const struct lanes_voxels *met,
+/* Optical depth of voxels' sides along the ray. words: of struct voxel. */
+static inline lanes voxels_depth(const struct march_job *job, const lanes_int words[4],
                                  const bool by_mean)
 {
     lanes extinction, entries[5];
-    memcpy(&extinction, &met->words[0], sizeof extinction);
-    if (by_mean)
-        return extinction * lanes_sqrt(met->mean.shown / (met->mean.square + 2 * met->mean.side));
-    matrix_entries(met->words[1], entries);
+    memcpy(&extinction, &words[0], sizeof extinction);
+    if (by_mean) {
+        const struct lanes_mean mean = mean_of(job, words[2]);
+        return extinction * lanes_sqrt(mean.shown / (mean.square + 2 * mean.side));
+    }
+    matrix_entries(words[1], entries);
     return extinction * lanes_sqrt(lanes_max(form_value(&job->hidden, entries), lanes_all(0)));
 }
 
@@ -145,20 +131,20 @@ static inline struct lanes_facing facing_by_moments(const struct march_job *job,
 }
 
 /* Those of voxels_visible.h. */
-static inline struct lanes_facing facing_by_mean(const struct march_job *job,
-                                                 const struct lanes_mean *mean)
+static inline struct lanes_facing facing_by_mean(const struct march_job *job, lanes_int normals)
 {
     const float *sun = job->toward_sun;
+    const struct lanes_mean mean = mean_of(job, normals);
     struct lanes_facing facing;
-    const lanes *n = mean->n, least = lanes_all(lanes_least);
+    const lanes *n = mean.n, least = lanes_all(lanes_least);
     lanes to_sun = n[0] * sun[0] + n[1] * sun[1] + n[2] * sun[2];
-    lanes across = terms_value(visible_across, 1 - lanes_sqrt(mean->square));
-    lanes along = (1 - 3 * across) * (1 / mean->square);
-    lanes seen = lanes_max(across + along * mean->to_eye * mean->to_eye, least);
+    lanes across = terms_value(visible_across, 1 - lanes_sqrt(mean.square));
+    lanes along = (1 - 3 * across) * (1 / mean.square);
+    lanes seen = lanes_max(across + along * mean.to_eye * mean.to_eye, least);
     lanes lit = lanes_max(across * job->sun_square + along * to_sun * to_sun, least);
-    lanes both = across * job->cosine + along * mean->to_eye * to_sun, product = seen * lit;
-    facing.toward = both / lanes_sqrt(mean->shown);
-    facing.even = 0.63661977f * lanes_sqrt(product / mean->shown) *
+    lanes both = across * job->cosine + along * mean.to_eye * to_sun, product = seen * lit;
+    facing.toward = both / lanes_sqrt(mean.shown);
+    facing.even = 0.63661977f * lanes_sqrt(product / mean.shown) *
                   arc_value(lanes_min(both * both / product, lanes_all(1)));
     facing.upright = across + along * n[1] * n[1];
     return facing;
@@ -202,13 +188,12 @@ static inline lanes sun_share(const struct march_sun *light, const lanes place[3
 /* Radiance toward the eye, without fog. place: in the level's voxels, where the sun has shadows;
  * else NULL. */
 static inline __attribute__((always_inline)) void voxels_shine(const struct march_job *job,
-                                                               const struct lanes_voxels *met,
+                                                               lanes_int normals, lanes_int color,
                                                                const bool by_mean,
                                                                const lanes *place, lanes rgb[3])
 {
-    const lanes_int color = met->words[3];
     const struct lanes_facing facing =
-        by_mean ? facing_by_mean(job, &met->mean) : facing_by_moments(job, met->words[2]);
+        by_mean ? facing_by_mean(job, normals) : facing_by_moments(job, normals);
     lanes evenness = by_mean ? lanes_all(1) : 0.75f + lanes_of(color >> 24 & 15) * (1.0f / 60);
     lanes bark = lanes_of(color >> 28 & 15) * (1.0f / 15);
     lanes one_sided = lanes_max(bark, lanes_all(job->one_sided));
