@@ -14,7 +14,8 @@ static const struct option table[] = {
                 "(Kajiya-Kay), lit alike on all sides; by Noma's opacities along three axes; by the "
                 "mean of their normals, which lights them too"),
     OPTION(struct options, stop, 0.02, 0, 0.5, "", "a ray ends when it lets through no more"),
-    OPTION(struct options, step, 1, 0.125, 4, "voxels", "along a ray, where voxels are not empty"),
+    OPTION(struct options, step, 1, 0.125, 4, "voxels",
+           "along a ray, where voxels are not empty; the first step into them is one voxel at most"),
     OPTION(struct options, bias, 0, -4, 4, "", "added to the level of detail that a pixel asks for"),
     OPTION(struct options, smooth, 0, 0, 1, "levels",
            "over which a level of detail turns into the next, both being drawn, and voxels into far "

@@ -32,7 +32,7 @@ struct lanes_many {
 
 /* LANES rays under way: from at to end along the view, m. */
 struct lanes_rays {
-    lanes ray[3], at, end;
+    lanes ray[3], at, end, stride;
     lanes_int key;
 };
 
@@ -41,7 +41,7 @@ struct lanes_march {
     const struct march_rect *rect;
     struct march_rays *rays;
     /* The job's, in all lanes. leap: along no ray a voxel's side is shorter. */
-    lanes eye[3], most[3], step_m, leap_m;
+    lanes eye[3], most[3], step_m, first_m, leap_m; /* first: a step from empty space on */
     lanes_int size[2];
     float row_per_key;
     int closed;
@@ -163,6 +163,7 @@ static inline void rays_refill(struct lanes_march *march, struct lanes_rays *on)
                              lanes_int_load(fresh->keys + from));
     on->at = lanes_pick(is_kept, lanes_squeeze(on->at, order), lanes_load(fresh->at_m + from));
     on->end = lanes_pick(is_kept, lanes_squeeze(on->end, order), lanes_load(fresh->end_m + from));
+    on->stride = lanes_pick(is_kept, lanes_squeeze(on->stride, order), march->first_m);
     fresh->first += left < LANES - kept ? left : LANES - kept;
     rays_of_keys(march, on->key, on->ray);
 }

@@ -28,8 +28,7 @@ rays_step(struct lanes_march *march, struct lanes_rays *on, lanes_mask alive, co
 {
     struct lanes_met *met = &march->met;
     const int last = met->last;
-    const lanes step = march->step_m;
-    lanes length = lanes_min(step, on->end - on->at), middle = on->at + 0.5f * length;
+    lanes length = lanes_min(on->stride, on->end - on->at), middle = on->at + 0.5f * length;
     lanes_int cell = cells_at(march, on->ray, middle, alive);
     lanes_int voxel = cell - VOXELS_FIRST;
     lanes_mask full = lanes_both(lanes_int_less((lanes_int){0} - 1, voxel), alive);
@@ -41,9 +40,10 @@ rays_step(struct lanes_march *march, struct lanes_rays *on, lanes_mask alive, co
         lanes_store(met->middles_m + last, lanes_squeeze(middle, order));
     const int count = lanes_count(full);
     met->last = last + count;
-    lanes next = on->at + step;
+    lanes next = on->at + on->stride;
     lanes far = lanes_max(next, (middle - march->leap_m) + lanes_of(cell) * march->leap_m);
     on->at = lanes_pick(full, next, far);
+    on->stride = lanes_pick(full, march->step_m, march->first_m);
     return count;
 }
 
@@ -191,6 +191,7 @@ static inline __attribute__((always_inline)) int march_rays_of(const struct marc
     for (int i = 0; i < 2; i++)
         march.size[i] = (lanes_int){0} + job->size[i];
     march.step_m = lanes_all(job->step / job->speed);
+    march.first_m = lanes_min(march.step_m, lanes_all(1 / job->speed));
     march.leap_m = lanes_all(leap_of(job, rect));
     march.row_per_key = 1.0f / (float)rays->stride;
     march.closed = 0;
@@ -204,7 +205,7 @@ static inline __attribute__((always_inline)) int march_rays_of(const struct marc
     march.met.first = march.met.last = 0;
     uint64_t lookups = 0;
     for (int set = 0; set < SETS; set++) {
-        march.on[set].at = march.on[set].end = lanes_all(0);
+        march.on[set].at = march.on[set].end = march.on[set].stride = lanes_all(0);
         march.on[set].key = (lanes_int){0};
         rays_refill(&march, &march.on[set]);
     }
