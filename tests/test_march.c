@@ -24,7 +24,7 @@ static void slab_fill(struct slab *slab, float extinction, const float eye[3], c
     memset(slab, 0, sizeof *slab);
     slab->voxel = voxel_pack(&optics, (const float[3]){1, 1, 1});
     for (int i = 0; i < 8 * 6 * 5; i++)
-        slab->cells[i] = VOXELS_FIRST;
+        slab->cells[i] = MARCH_FULL;
     struct march_job *job = &slab->job;
     job->cells = slab->cells;
     job->voxels = (const uint32_t *)(const void *)&slab->voxel;
@@ -214,7 +214,7 @@ static void test_march__every_instruction_set_gives_the_same_bits(void **state)
         random_ray(&random, eye, ray);
         slab_fill(&slabs[0], 0.4f, eye, ray);
         for (int i = 0; i < 8 * 6 * 5; i++)
-            slabs[0].cells[i] = random_below(&random, 3) ? 1 : VOXELS_FIRST;
+            slabs[0].cells[i] = random_below(&random, 3) ? 0 : MARCH_FULL;
         slabs[0].voxel.normals = random_u32(&random) >> 2;
         slabs[0].voxel.color = random_u32(&random);
         for (int i = 0; i < 3; i++) {
@@ -264,7 +264,7 @@ static void test_march__a_ray_gives_the_same_bits_alone_and_among_others(void **
     struct slab slab;
     slab_fill(&slab, 1.3f, (const float[3]){-4, 2.8f, 2.1f}, (const float[3]){1, -0.35f, -0.3f});
     for (int i = 0; i < 8 * 6 * 5; i++)
-        slab.cells[i] = random_below(&random, 3) ? 1 : VOXELS_FIRST;
+        slab.cells[i] = random_below(&random, 3) ? 0 : MARCH_FULL;
     slab.job.right[1] = 0.7f / MANY_ACROSS;
     slab.job.down[2] = 0.6f / MANY_DOWN;
     slab.job.stop = 0.02f;

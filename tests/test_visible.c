@@ -129,7 +129,7 @@ static void lone_fill(struct lone *lone, const double mean[3], const double eye[
     lone->voxel = voxel_pack(&optics, (const float[3]){1, 1, 1});
     lone->voxel.normals =
         voxel_pack_mean((const float[3]){(float)mean[0], (float)mean[1], (float)mean[2]});
-    lone->cell = VOXELS_FIRST;
+    lone->cell = MARCH_FULL;
     struct march_job *job = &lone->job;
     *job = (struct march_job){.cells = &lone->cell,
                               .voxels = (const uint32_t *)(const void *)&lone->voxel,

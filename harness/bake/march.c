@@ -29,6 +29,8 @@ static enum status species_fill(struct workspace *workspace, struct plant *plant
         species->voxels = voxels_noma(workspace->arena, species->voxels);
     if (options->model == MARCH_VISIBLE)
         species->voxels = voxels_visible(workspace->arena, species->voxels);
+    for (uint32_t level = 0; level < species->voxels->levels_count; level++)
+        species->cells[level] = march_free_cells(workspace->arena, &species->voxels->levels[level]);
     *bound = cull_bound_of(mesh);
     species->mesh = mesh;
     species->is_solid = mesh_is_solid(mesh);

@@ -17,8 +17,8 @@ struct lanes_fresh {
 
 /* Voxels that rays have met. */
 struct lanes_met {
-    int first, last; /* in the arrays */
-    int32_t keys[MET_MAX + MANY], voxels[MET_MAX + MANY];
+    int first, last;                                     /* in the arrays */
+    int32_t keys[MET_MAX + MANY], cells[MET_MAX + MANY]; /* with MARCH_FULL */
     float lengths_m[MET_MAX + MANY];
     float middles_m[MET_MAX + MANY]; /* where the sun has shadows */
 };
@@ -33,7 +33,7 @@ struct lanes_many {
 /* LANES rays under way: from at to end along the view, m. */
 struct lanes_rays {
     lanes ray[3], at, end, stride;
-    lanes_int key;
+    lanes_int key, way; /* where the bits of the way that it goes begin in a cell */
 };
 
 struct lanes_march {
@@ -82,6 +82,18 @@ static inline void rays_of_keys(const struct lanes_march *march, lanes_int keys,
 {
     lanes key = lanes_of(keys), row = lanes_of(lanes_truncate((key + 0.5f) * march->row_per_key));
     rays_of(march->job, key - row * (float)march->rays->stride, row, ray);
+}
+
+/* Where the bits of a ray's way begin in a cell. */
+static inline lanes_int ways_of(const lanes ray[3])
+{
+    lanes_int way = {0};
+    for (int i = 0; i < 3; i++) {
+        lanes_int bits;
+        memcpy(&bits, &ray[i], sizeof bits);
+        way |= (bits >> 31) & (MARCH_WAY_BITS << i);
+    }
+    return way;
 }
 
 /* Where rays enter and leave the level's box. */
@@ -166,6 +178,7 @@ static inline void rays_refill(struct lanes_march *march, struct lanes_rays *on)
     on->stride = lanes_pick(is_kept, lanes_squeeze(on->stride, order), march->first_m);
     fresh->first += left < LANES - kept ? left : LANES - kept;
     rays_of_keys(march, on->key, on->ray);
+    on->way = ways_of(on->ray);
 }
 
 #endif

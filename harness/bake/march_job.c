@@ -218,7 +218,7 @@ void march_job_fill(const struct march_view *picture, const struct march_tree *t
     const struct voxels_level *grid = &voxels->levels[level];
     const float per_m = 1 / (tree->scale * grid->voxel_m);
     struct march_box box = march_box_of(picture->view, tree, voxels, level);
-    job->cells = grid->cells;
+    job->cells = picture->species[tree->species].cells[level];
     job->voxels = (const uint32_t *)(const void *)voxels->voxels;
     for (int i = 0; i < 3; i++)
         job->size[i] = (int32_t)grid->size[i];

@@ -10,6 +10,7 @@
 /* A species as the march has it. */
 struct march_species {
     const struct voxels *voxels;
+    const uint32_t *cells[VOXELS_LEVELS_MAX]; /* of its levels, as march_free.h has them */
     const struct mesh *mesh;
     float center_m[3]; /* of the finest level's box, in the plant's axes */
     float half_m[3];   /* its half extents */

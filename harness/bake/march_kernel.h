@@ -30,18 +30,18 @@ rays_step(struct lanes_march *march, struct lanes_rays *on, lanes_mask alive, co
     const int last = met->last;
     lanes length = lanes_min(on->stride, on->end - on->at), middle = on->at + 0.5f * length;
     lanes_int cell = cells_at(march, on->ray, middle, alive);
-    lanes_int voxel = cell - VOXELS_FIRST;
-    lanes_mask full = lanes_both(lanes_int_less((lanes_int){0} - 1, voxel), alive);
+    lanes_mask full = lanes_int_less(cell, (lanes_int){0}); /* MARCH_FULL */
     lanes_order order = lanes_order_of(full);
     lanes_int_store(met->keys + last, lanes_int_squeeze(on->key, order));
-    lanes_int_store(met->voxels + last, lanes_int_squeeze(voxel, order));
+    lanes_int_store(met->cells + last, lanes_int_squeeze(cell, order));
     lanes_store(met->lengths_m + last, lanes_squeeze(length, order));
     if (shaded)
         lanes_store(met->middles_m + last, lanes_squeeze(middle, order));
     const int count = lanes_count(full);
     met->last = last + count;
     lanes next = on->at + on->stride;
-    lanes far = lanes_max(next, (middle - march->leap_m) + lanes_of(cell) * march->leap_m);
+    lanes free = lanes_of(cell >> on->way & MARCH_WAY_MASK);
+    lanes far = lanes_max(next, middle + free * march->leap_m);
     on->at = lanes_pick(full, next, far);
     on->stride = lanes_pick(full, march->step_m, march->first_m);
     return count;
@@ -92,7 +92,7 @@ static inline __attribute__((always_inline)) void many_take(struct lanes_march *
     struct lanes_many many;
     for (int set = 0, at = met->first; set < MANY / LANES; set++, at += LANES) {
         lanes_int words[4];
-        lanes_gather_four(job->voxels, lanes_int_load(met->voxels + at) << 2, words);
+        lanes_gather_four(job->voxels, lanes_int_load(met->cells + at) << 2, words);
         many.normals[set] = words[2];
         many.colors[set] = words[3];
         lanes depth = voxels_depth(job, words, by_mean);
@@ -137,7 +137,7 @@ static inline void met_move(struct lanes_met *met)
 {
     for (int at = 0; at < MANY; at += LANES) {
         lanes_int_store(met->keys + at, lanes_int_load(met->keys + met->first + at));
-        lanes_int_store(met->voxels + at, lanes_int_load(met->voxels + met->first + at));
+        lanes_int_store(met->cells + at, lanes_int_load(met->cells + met->first + at));
         lanes_store(met->lengths_m + at, lanes_load(met->lengths_m + met->first + at));
         lanes_store(met->middles_m + at, lanes_load(met->middles_m + met->first + at));
     }
@@ -150,7 +150,7 @@ static inline void met_fill(struct lanes_met *met)
 {
     for (int at = 0; at < MANY; at += LANES) {
         lanes_int_store(met->keys + met->last + at, (lanes_int){0} + met->keys[met->first]);
-        lanes_int_store(met->voxels + met->last + at, (lanes_int){0} + met->voxels[met->first]);
+        lanes_int_store(met->cells + met->last + at, (lanes_int){0} + met->cells[met->first]);
         lanes_store(met->lengths_m + met->last + at, lanes_all(0));
         lanes_store(met->middles_m + met->last + at, lanes_all(met->middles_m[met->first]));
     }

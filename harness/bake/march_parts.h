@@ -2,7 +2,7 @@
 #ifndef TREELINE_BAKE_MARCH_PARTS_H
 #define TREELINE_BAKE_MARCH_PARTS_H
 
-#include "bake/voxels.h"
+#include "bake/march_free.h"
 
 /* Rays, row by row. Front to back: what has been gathered, and how much is still seen behind it. A
  * kernel reads up to MARCH_ROOM floats of left and depths_m past the last row's end. */
@@ -38,7 +38,7 @@ struct march_sun {
 
 /* A tree at one of its levels, seen through rays. Lengths in the level's voxels. */
 struct march_job {
-    const uint32_t *cells;
+    const uint32_t *cells;  /* as march_free.h has them */
     const uint32_t *voxels; /* four words each */
     int32_t size[3];
     float eye[3];
