@@ -97,7 +97,7 @@ $(ARCHIVE): $(OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(foreach name,march_avx2 cone_lanes_avx2,$(OBJ)/harness/bake/$(name).o $(OBJ)/harness/bake/$(name).tidy): CFLAGS_ALL += -mavx2
+$(foreach name,march_avx2 cone_lanes_avx2,$(OBJ)/harness/bake/$(name).o $(OBJ)/harness/bake/$(name).tidy): CFLAGS_ALL += -mavx2 -mfma
 $(OBJ)/harness/bake/march_avx512.o $(OBJ)/harness/bake/march_avx512.tidy: CFLAGS_ALL += -mavx512f -mavx512dq -mavx512bw -mavx512vl
 # Only the rooms that read files could meet what is not aligned.
 $(OBJ)/harness/bake/%.o $(OBJ)/methods/%.o: NO_ALIGNMENT := $(if $(filter sanitize,$(config)),-fno-sanitize=alignment)

@@ -5,7 +5,7 @@ size_t march_isas(struct march_isa isas[4])
 {
     size_t count = 0;
     isas[count++] = (struct march_isa){"plain", march_kernel_plain};
-    if (__builtin_cpu_supports("avx2"))
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
         isas[count++] = (struct march_isa){"avx2", march_kernel_avx2};
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))

@@ -15,7 +15,7 @@ static inline lanes_int cells_at(const struct lanes_march *march, const lanes ra
 {
     lanes_int at[3];
     for (int i = 0; i < 3; i++) {
-        lanes place = lanes_max(march->eye[i] + middle * ray[i], lanes_all(0));
+        lanes place = lanes_fma(middle, ray[i], march->eye[i]);
         at[i] = lanes_truncate(lanes_min(place, march->most[i]));
     }
     lanes_int index = (at[2] * march->size[1] + at[1]) * march->size[0] + at[0];
@@ -28,7 +28,8 @@ rays_step(struct lanes_march *march, struct lanes_rays *on, lanes_mask alive, co
 {
     struct lanes_met *met = &march->met;
     const int last = met->last;
-    lanes length = lanes_min(on->stride, on->end - on->at), middle = on->at + 0.5f * length;
+    lanes length = lanes_min(on->stride, on->end - on->at),
+          middle = lanes_fma(length, lanes_all(0.5f), on->at);
     lanes_int cell = cells_at(march, on->ray, middle, alive);
     lanes_mask full = lanes_int_less(cell, (lanes_int){0}); /* MARCH_FULL */
     lanes_order order = lanes_order_of(full);
@@ -41,7 +42,7 @@ rays_step(struct lanes_march *march, struct lanes_rays *on, lanes_mask alive, co
     met->last = last + count;
     lanes next = on->at + on->stride;
     lanes free = lanes_of(cell >> on->way & MARCH_WAY_MASK);
-    lanes far = lanes_max(next, middle + free * march->leap_m);
+    lanes far = lanes_max(next, lanes_fma(free, march->leap_m, middle));
     on->at = lanes_pick(full, next, far);
     on->stride = lanes_pick(full, march->step_m, march->first_m);
     return count;
@@ -109,7 +110,7 @@ static inline __attribute__((always_inline)) void many_take(struct lanes_march *
         }
         voxels_shine(job, many.normals[set], many.colors[set], by_mean, shaded ? place : NULL, rgb);
         for (int c = 0; c < 3; c++)
-            rgb[c] = share * (job->fog[c] + job->clear * rgb[c]);
+            rgb[c] = share * lanes_fma(rgb[c], lanes_all(job->clear), lanes_all(job->fog[c]));
         lanes_scatter(march->rays->rgb, keys + at, rgb);
     }
 }

@@ -57,6 +57,11 @@ static inline lanes lanes_sqrt(lanes a)
 {
     return (lanes)_mm256_sqrt_ps((__m256)a);
 }
+/* a b + c, rounded once. */
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return (lanes)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+}
 static inline lanes_int lanes_truncate(lanes a)
 {
     return (lanes_int)_mm256_cvttps_epi32((__m256)a);

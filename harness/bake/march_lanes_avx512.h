@@ -55,6 +55,11 @@ static inline lanes lanes_sqrt(lanes a)
 {
     return (lanes)_mm512_sqrt_ps((__m512)a);
 }
+/* a b + c, rounded once. */
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return (lanes)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+}
 static inline lanes_int lanes_truncate(lanes a)
 {
     return (lanes_int)_mm512_cvttps_epi32((__m512)a);

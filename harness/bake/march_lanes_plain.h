@@ -58,6 +58,14 @@ static inline lanes lanes_sqrt(lanes a)
         root[i] = sqrtf(a[i]);
     return root;
 }
+/* a b + c, rounded once. */
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    lanes sum;
+    for (int i = 0; i < LANES; i++)
+        sum[i] = fmaf(a[i], b[i], c[i]);
+    return sum;
+}
 static inline lanes_int lanes_truncate(lanes a)
 {
     return __builtin_convertvector(a, lanes_int);

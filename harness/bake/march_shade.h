@@ -36,8 +36,10 @@ static inline lanes lanes_fade(lanes x)
     const float round = 12582912; /* 1.5 x 2^23 */
     lanes power = lanes_max(-1.44269504f * x, lanes_all(-126));
     lanes whole = (power + round) - round, part = power - whole;
-    lanes value = 1 + part * (0.69312103f +
-                              part * (0.24022107f + part * (0.055922036f + part * 0.0096760370f)));
+    lanes value = lanes_fma(part, lanes_all(0.0096760370f), lanes_all(0.055922036f));
+    value = lanes_fma(part, value, lanes_all(0.24022107f));
+    value = lanes_fma(part, value, lanes_all(0.69312103f));
+    value = lanes_fma(part, value, lanes_all(1));
     lanes_int scale = (lanes_truncate(whole) + 127) << 23;
     lanes factor;
     memcpy(&factor, &scale, sizeof factor);
@@ -46,9 +48,9 @@ static inline lanes lanes_fade(lanes x)
 
 static inline lanes form_value(const struct march_form *form, const lanes entries[5])
 {
-    lanes value = form->factors[0] + entries[0] * form->factors[1];
-    for (int i = 1; i < 5; i++)
-        value += entries[i] * form->factors[i + 1];
+    lanes value = lanes_all(form->factors[0]);
+    for (int i = 0; i < 5; i++)
+        value = lanes_fma(entries[i], lanes_all(form->factors[i + 1]), value);
     return value;
 }
 
@@ -61,7 +63,9 @@ static inline void matrix_entries(lanes_int bits, lanes entries[5])
 /* sqrt(1 - x x) + x asin(x) of x squared, 0..1; absolute error 1.2e-3. */
 static inline lanes arc_value(lanes x2)
 {
-    return 0.99953635f + x2 * (0.51276042f + x2 * (-0.0092389264f + x2 * 0.066520270f));
+    lanes value = lanes_fma(x2, lanes_all(0.066520270f), lanes_all(-0.0092389264f));
+    value = lanes_fma(x2, value, lanes_all(0.51276042f));
+    return lanes_fma(x2, value, lanes_all(0.99953635f));
 }
 
 static const float lanes_least = 1e-4f;
