@@ -17,16 +17,16 @@ struct lanes_fresh {
 
 /* Voxels that rays have met. */
 struct lanes_met {
-    int first, last;                                     /* in the arrays */
-    int32_t keys[MET_MAX + MANY], cells[MET_MAX + MANY]; /* with MARCH_FULL */
+    int first, last;                                      /* in the arrays */
+    int32_t keys[MET_MAX + MANY], places[MET_MAX + MANY]; /* of their words */
     float lengths_m[MET_MAX + MANY];
     float middles_m[MET_MAX + MANY]; /* where the sun has shadows */
 };
 
 /* MANY of them, while they hide and shine. */
 struct lanes_many {
-    float pass[MANY];   /* of what their rays see they let through a share, */
-    float shares[MANY]; /* and hide these */
+    float befores[MANY], pass[MANY]; /* of what is seen before one the share that it lets through */
+    lanes shares[MANY / LANES];      /* that they hide */
     lanes_int normals[MANY / LANES], colors[MANY / LANES];
 };
 

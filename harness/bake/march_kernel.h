@@ -34,7 +34,7 @@ rays_step(struct lanes_march *march, struct lanes_rays *on, lanes_mask alive, co
     lanes_mask full = lanes_int_less(cell, (lanes_int){0}); /* MARCH_FULL */
     lanes_order order = lanes_order_of(full);
     lanes_int_store(met->keys + last, lanes_int_squeeze(on->key, order));
-    lanes_int_store(met->cells + last, lanes_int_squeeze(cell, order));
+    lanes_int_store(met->places + last, lanes_int_squeeze(cell << 2, order));
     lanes_store(met->lengths_m + last, lanes_squeeze(length, order));
     if (shaded)
         lanes_store(met->middles_m + last, lanes_squeeze(middle, order));
@@ -60,23 +60,37 @@ static inline void rays_close(struct lanes_march *march, const int32_t *keys, in
         }
 }
 
-/* The shares that voxels hide of what their rays see, one after the other: none where nothing is
- * seen any more. Rays that they close are done. */
+/* What is seen before each of the voxels: one after the other, as a ray may have met some of them.
+ */
 static inline void many_hide(struct lanes_march *march, const int32_t *keys,
                              struct lanes_many *many)
 {
     const float stop = march->job->stop;
     float *left = march->rays->left;
-    int32_t closed[MANY + 1];
-    int count = 0;
     for (int i = 0; i < MANY; i++) {
         const float before = left[keys[i]];
-        const float share = before > stop ? before - before * many->pass[i] : 0;
-        const float after = before - share;
-        left[keys[i]] = after;
-        many->shares[i] = share;
-        closed[count] = keys[i];
-        count += (before > stop) & !(after > stop);
+        many->befores[i] = before;
+        left[keys[i]] = before > stop ? before * many->pass[i] : before;
+    }
+}
+
+/* The shares that voxels hide: none where nothing is seen any more. Rays that they close are done.
+ */
+static inline void many_share(struct lanes_march *march, const int32_t *keys,
+                              struct lanes_many *many)
+{
+    const lanes stop = lanes_all(march->job->stop);
+    int32_t closed[MANY + LANES];
+    int count = 0;
+    for (int at = 0; at < MANY; at += LANES) {
+        lanes before = lanes_load(many->befores + at);
+        lanes after = before * lanes_load(many->pass + at);
+        lanes_mask open = lanes_less(stop, before),
+                   closes = lanes_but(open, lanes_less(stop, after));
+        many->shares[at / LANES] = lanes_pick(open, before - after, lanes_all(0));
+        lanes_int_store(closed + count,
+                        lanes_int_squeeze(lanes_int_load(keys + at), lanes_order_of(closes)));
+        count += lanes_count(closes);
     }
     rays_close(march, closed, count);
 }
@@ -93,7 +107,7 @@ static inline __attribute__((always_inline)) void many_take(struct lanes_march *
     struct lanes_many many;
     for (int set = 0, at = met->first; set < MANY / LANES; set++, at += LANES) {
         lanes_int words[4];
-        lanes_gather_four(job->voxels, lanes_int_load(met->cells + at) << 2, words);
+        lanes_gather_four(job->voxels, met->places + at, words);
         many.normals[set] = words[2];
         many.colors[set] = words[3];
         lanes depth = voxels_depth(job, words, by_mean);
@@ -101,8 +115,9 @@ static inline __attribute__((always_inline)) void many_take(struct lanes_march *
                     lanes_fade(depth * lanes_load(met->lengths_m + at) * depth_per));
     }
     many_hide(march, keys, &many);
+    many_share(march, keys, &many);
     for (int set = 0, at = 0; set < MANY / LANES; set++, at += LANES) {
-        lanes place[3], rgb[3], share = lanes_load(many.shares + at);
+        lanes place[3], rgb[3];
         if (shaded) {
             rays_of_keys(march, lanes_int_load(keys + at), place);
             for (int i = 0; i < 3; i++)
@@ -110,7 +125,8 @@ static inline __attribute__((always_inline)) void many_take(struct lanes_march *
         }
         voxels_shine(job, many.normals[set], many.colors[set], by_mean, shaded ? place : NULL, rgb);
         for (int c = 0; c < 3; c++)
-            rgb[c] = share * lanes_fma(rgb[c], lanes_all(job->clear), lanes_all(job->fog[c]));
+            rgb[c] =
+                many.shares[set] * lanes_fma(rgb[c], lanes_all(job->clear), lanes_all(job->fog[c]));
         lanes_scatter(march->rays->rgb, keys + at, rgb);
     }
 }
@@ -138,7 +154,7 @@ static inline void met_move(struct lanes_met *met)
 {
     for (int at = 0; at < MANY; at += LANES) {
         lanes_int_store(met->keys + at, lanes_int_load(met->keys + met->first + at));
-        lanes_int_store(met->cells + at, lanes_int_load(met->cells + met->first + at));
+        lanes_int_store(met->places + at, lanes_int_load(met->places + met->first + at));
         lanes_store(met->lengths_m + at, lanes_load(met->lengths_m + met->first + at));
         lanes_store(met->middles_m + at, lanes_load(met->middles_m + met->first + at));
     }
@@ -151,7 +167,7 @@ static inline void met_fill(struct lanes_met *met)
 {
     for (int at = 0; at < MANY; at += LANES) {
         lanes_int_store(met->keys + met->last + at, (lanes_int){0} + met->keys[met->first]);
-        lanes_int_store(met->cells + met->last + at, (lanes_int){0} + met->cells[met->first]);
+        lanes_int_store(met->places + met->last + at, (lanes_int){0} + met->places[met->first]);
         lanes_store(met->lengths_m + met->last + at, lanes_all(0));
         lanes_store(met->middles_m + met->last + at, lanes_all(met->middles_m[met->first]));
     }

@@ -29,6 +29,11 @@ static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 {
     return a & b;
 }
+/* The first, but not the second. */
+static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
+{
+    return a & ~b;
+}
 static inline lanes lanes_pick(lanes_mask mask, lanes yes, lanes no)
 {
     return (lanes)_mm256_blendv_ps((__m256)no, (__m256)yes, (__m256)mask);
@@ -77,14 +82,15 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (__m256i)at, (__m256i)mask, 4);
 }
 
-/* Four words from each place. Eight loads and a transposition:
+/* Four words from each of LANES places. Eight loads and a transposition:
  * gathers of single words take twice the time. */
-static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_int got[4])
+static inline void lanes_gather_four(const uint32_t *words, const int32_t *at, lanes_int got[4])
 {
     __m256i pairs[4], mixed[4];
     for (int i = 0; i < 4; i++) {
-        __m128i low = _mm_loadu_si128((const __m128i *)(const void *)(words + at[i]));
-        __m128i high = _mm_loadu_si128((const __m128i *)(const void *)(words + at[i + 4]));
+        __m128i low = _mm_loadu_si128((const __m128i *)(const void *)(words + (uint32_t)at[i]));
+        __m128i high =
+            _mm_loadu_si128((const __m128i *)(const void *)(words + (uint32_t)at[i + 4]));
         pairs[i] = _mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1);
     }
     for (int i = 0; i < 2; i++) {

@@ -27,6 +27,11 @@ static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 {
     return (lanes_mask)(a & b);
 }
+/* The first, but not the second. */
+static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
+{
+    return (lanes_mask)(a & ~b);
+}
 static inline lanes lanes_pick(lanes_mask mask, lanes yes, lanes no)
 {
     return (lanes)_mm512_mask_blend_ps(mask, (__m512)no, (__m512)yes);
@@ -75,11 +80,12 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
                                                   (const int *)words, 4);
 }
 
-/* Four words from each place. */
-static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_int got[4])
+/* Four words from each of LANES places. */
+static inline void lanes_gather_four(const uint32_t *words, const int32_t *at, lanes_int got[4])
 {
+    const __m512i places = _mm512_loadu_si512(at);
     for (int k = 0; k < 4; k++)
-        got[k] = (lanes_int)_mm512_i32gather_epi32((__m512i)at, (const int *)(words + k), 4);
+        got[k] = (lanes_int)_mm512_i32gather_epi32(places, (const int *)(words + k), 4);
 }
 
 /* The byte at a place and the next in bits 0 to 15, whatever above them. Reads four bytes. */

@@ -27,6 +27,11 @@ static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 {
     return a & b;
 }
+/* The first, but not the second. */
+static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
+{
+    return a & ~b;
+}
 static inline lanes lanes_pick(lanes_mask mask, lanes yes, lanes no)
 {
     return (lanes)((mask & (lanes_mask)yes) | (~mask & (lanes_mask)no));
@@ -83,8 +88,8 @@ static inline lanes_int lanes_gather(const uint32_t *words, lanes_int at, lanes_
     return got;
 }
 
-/* Four words from each place. */
-static inline void lanes_gather_four(const uint32_t *words, lanes_int at, lanes_int got[4])
+/* Four words from each of LANES places. */
+static inline void lanes_gather_four(const uint32_t *words, const int32_t *at, lanes_int got[4])
 {
     for (int i = 0; i < LANES; i++)
         for (int k = 0; k < 4; k++)

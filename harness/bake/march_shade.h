@@ -113,23 +113,28 @@ static inline lanes voxels_depth(const struct march_job *job, const lanes_int wo
 }
 
 /* What voxels' normals give of what is seen: the mean |N.L|, and the mean N.L for N toward the
- * eye. */
+ * eye; both divided by the voxel's evenness. */
 struct lanes_facing {
     lanes even, toward;
     lanes upright; /* of a stretched tree, the mean square of the normals' y in the plant */
 };
 
 /* The closures of voxels.h. */
-static inline struct lanes_facing facing_by_moments(const struct march_job *job, lanes_int normals)
+static inline struct lanes_facing facing_by_moments(const struct march_job *job, lanes_int normals,
+                                                    lanes_int color)
 {
     struct lanes_facing facing;
     lanes entries[5];
     matrix_entries(normals, entries);
     lanes seen = lanes_max(form_value(&job->seen, entries), lanes_all(lanes_least));
     lanes lit = lanes_max(form_value(&job->lit, entries), lanes_all(lanes_least));
-    facing.toward = form_value(&job->both, entries) / lanes_sqrt(seen);
-    facing.even = 0.63661977f * lanes_sqrt(lit) *
-                  arc_value(lanes_min(facing.toward * facing.toward / lit, lanes_all(1)));
+    lanes evenness = lanes_fma(lanes_of(color >> 24 & 15), lanes_all(1.0f / 60), lanes_all(0.75f));
+    /* one quotient in place of three: by both roots, and by evenness */
+    lanes root = lanes_sqrt(lit), roots = root * lanes_sqrt(seen), per = 1 / (roots * evenness);
+    lanes cosine = form_value(&job->both, entries) * (per * evenness);
+    lanes scale = root * (per * roots);
+    facing.toward = cosine * scale;
+    facing.even = 0.63661977f * scale * arc_value(lanes_min(cosine * cosine, lanes_all(1)));
     facing.upright = job->raise != 0 ? form_value(&job->upright, entries) : lanes_all(0);
     return facing;
 }
@@ -197,18 +202,18 @@ static inline __attribute__((always_inline)) void voxels_shine(const struct marc
                                                                const lanes *place, lanes rgb[3])
 {
     const struct lanes_facing facing =
-        by_mean ? facing_by_mean(job, normals) : facing_by_moments(job, normals);
-    lanes evenness = by_mean ? lanes_all(1) : 0.75f + lanes_of(color >> 24 & 15) * (1.0f / 60);
+        by_mean ? facing_by_mean(job, normals) : facing_by_moments(job, normals, color);
     lanes bark = lanes_of(color >> 28 & 15) * (1.0f / 15);
     lanes one_sided = lanes_max(bark, lanes_all(job->one_sided));
-    lanes diffuse = lanes_max(
-        (facing.even + 0.5f * one_sided * (facing.toward - facing.even)) / evenness, lanes_all(0));
+    lanes diffuse = lanes_max(lanes_fma(0.5f * one_sided, facing.toward - facing.even, facing.even),
+                              lanes_all(0));
     if (job->raise != 0)
         diffuse /= lanes_sqrt(lanes_max(1 + job->raise * facing.upright, lanes_all(lanes_least)));
     if (place)
         diffuse *= sun_share(&job->light, place, bark);
     for (int c = 0; c < 3; c++)
-        rgb[c] = lanes_of(color >> (8 * c) & 255) * (job->shade[c] + job->sun[c] * diffuse);
+        rgb[c] = lanes_of(color >> (8 * c) & 255) *
+                 lanes_fma(diffuse, lanes_all(job->sun[c]), lanes_all(job->shade[c]));
 }
 
 #endif
