@@ -5,7 +5,7 @@
 
 #include "bake/march_shade.h"
 
-enum { SETS = 3, FRESH_MAX = 64, MET_MAX = 256, MANY = 32 };
+enum { SETS = 4, TURNS = 2, FRESH_MAX = 64, MET_MAX = 256, MANY = 32 };
 
 /* Rays to come. LANES of room on both sides. */
 struct lanes_fresh {

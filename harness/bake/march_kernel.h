@@ -190,13 +190,13 @@ static inline float leap_of(const struct march_job *job, const struct march_rect
 }
 
 /* All sets of lanes take a step by turns, so that one computes while another waits for its voxels.
- * shaded: the sun has shadows. */
+ * After some turns all get new rays: whether it is worth it for one set, which the processor would
+ * have to guess, is not asked. shaded: the sun has shadows. */
 static inline __attribute__((always_inline)) int march_rays_of(const struct march_job *job,
                                                                const struct march_rect *rect,
                                                                struct march_rays *rays,
                                                                const bool shaded)
 {
-    enum { FEW = LANES - LANES / 4 };
     struct lanes_march march;
     march.job = job;
     march.rect = rect;
@@ -229,13 +229,11 @@ static inline __attribute__((always_inline)) int march_rays_of(const struct marc
     bool any;
     do {
         any = false;
-        for (int set = 0; set < SETS; set++) {
-            struct lanes_rays *on = &march.on[set];
+        for (int set = 0; set < SETS && fresh_any(&march); set++)
+            rays_refill(&march, &march.on[set]);
+        for (int turn = 0; turn < TURNS * SETS; turn++) {
+            struct lanes_rays *on = &march.on[turn % SETS];
             lanes_mask alive = lanes_less(on->at, on->end);
-            if (lanes_count(alive) <= FEW && fresh_any(&march)) {
-                rays_refill(&march, on);
-                alive = lanes_less(on->at, on->end);
-            }
             if (!lanes_any(alive))
                 continue;
             lookups += (unsigned)lanes_count(alive);
@@ -244,7 +242,7 @@ static inline __attribute__((always_inline)) int march_rays_of(const struct marc
         }
         for (; march.met.last - march.met.first >= MANY; march.met.first += MANY)
             march.take(&march);
-        if (march.met.last > MET_MAX - SETS * LANES)
+        if (march.met.last > MET_MAX - TURNS * SETS * LANES)
             met_move(&march.met);
     } while (any);
     if (march.met.first < march.met.last) {
