@@ -45,7 +45,7 @@ struct lanes_march {
     lanes_int size[2];
     float row_per_key;
     int closed;
-    void (*take)(struct lanes_march *march); /* the first MANY voxels of met */
+    void (*take)(struct lanes_march *march, int sets); /* the first sets of LANES voxels of met */
     struct lanes_fresh fresh;
     struct lanes_met met;
     struct lanes_rays on[SETS];

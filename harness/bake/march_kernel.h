@@ -62,12 +62,12 @@ static inline void rays_close(struct lanes_march *march, const int32_t *keys, in
 
 /* What is seen before each of the voxels: one after the other, as a ray may have met some of them.
  */
-static inline void many_hide(struct lanes_march *march, const int32_t *keys,
+static inline void many_hide(struct lanes_march *march, const int32_t *keys, int count,
                              struct lanes_many *many)
 {
     const float stop = march->job->stop;
     float *left = march->rays->left;
-    for (int i = 0; i < MANY; i++) {
+    for (int i = 0; i < count; i++) {
         const float before = left[keys[i]];
         many->befores[i] = before;
         left[keys[i]] = before > stop ? before * many->pass[i] : before;
@@ -76,18 +76,18 @@ static inline void many_hide(struct lanes_march *march, const int32_t *keys,
 
 /* The shares that voxels hide: none where nothing is seen any more. Rays that they close are done.
  */
-static inline void many_share(struct lanes_march *march, const int32_t *keys,
+static inline void many_share(struct lanes_march *march, const int32_t *keys, int sets,
                               struct lanes_many *many)
 {
     const lanes stop = lanes_all(march->job->stop);
     int32_t closed[MANY + LANES];
     int count = 0;
-    for (int at = 0; at < MANY; at += LANES) {
+    for (int set = 0, at = 0; set < sets; set++, at += LANES) {
         lanes before = lanes_load(many->befores + at);
         lanes after = before * lanes_load(many->pass + at);
         lanes_mask open = lanes_less(stop, before),
                    closes = lanes_but(open, lanes_less(stop, after));
-        many->shares[at / LANES] = lanes_pick(open, before - after, lanes_all(0));
+        many->shares[set] = lanes_pick(open, before - after, lanes_all(0));
         lanes_int_store(closed + count,
                         lanes_int_squeeze(lanes_int_load(keys + at), lanes_order_of(closes)));
         count += lanes_count(closes);
@@ -95,9 +95,9 @@ static inline void many_share(struct lanes_march *march, const int32_t *keys,
     rays_close(march, closed, count);
 }
 
-/* MANY voxels hide and shine, set by set of lanes. What one set computes does not wait for another,
+/* Voxels hide and shine, set by set of lanes. What one set computes does not wait for another,
  * so that the processor does several at a time. */
-static inline __attribute__((always_inline)) void many_take(struct lanes_march *march,
+static inline __attribute__((always_inline)) void many_take(struct lanes_march *march, int sets,
                                                             const bool shaded, const bool by_mean)
 {
     const struct march_job *job = march->job;
@@ -105,7 +105,7 @@ static inline __attribute__((always_inline)) void many_take(struct lanes_march *
     const int32_t *keys = met->keys + met->first;
     const float depth_per = job->speed * (1 - job->thinned);
     struct lanes_many many;
-    for (int set = 0, at = met->first; set < MANY / LANES; set++, at += LANES) {
+    for (int set = 0, at = met->first; set < sets; set++, at += LANES) {
         lanes_int words[4];
         lanes_gather_four(job->voxels, met->places + at, words);
         many.normals[set] = words[2];
@@ -114,9 +114,9 @@ static inline __attribute__((always_inline)) void many_take(struct lanes_march *
         lanes_store(many.pass + set * LANES,
                     lanes_fade(depth * lanes_load(met->lengths_m + at) * depth_per));
     }
-    many_hide(march, keys, &many);
-    many_share(march, keys, &many);
-    for (int set = 0, at = 0; set < MANY / LANES; set++, at += LANES) {
+    many_hide(march, keys, sets * LANES, &many);
+    many_share(march, keys, sets, &many);
+    for (int set = 0, at = 0; set < sets; set++, at += LANES) {
         lanes place[3], rgb[3];
         if (shaded) {
             rays_of_keys(march, lanes_int_load(keys + at), place);
@@ -132,21 +132,21 @@ static inline __attribute__((always_inline)) void many_take(struct lanes_march *
 }
 
 /* Functions of their own: inlined, they have their constants loaded for each step, used or not. */
-static __attribute__((noinline)) void take_moments(struct lanes_march *march)
+static __attribute__((noinline)) void take_moments(struct lanes_march *march, int sets)
 {
-    many_take(march, false, false);
+    many_take(march, sets, false, false);
 }
-static __attribute__((noinline)) void take_moments_shaded(struct lanes_march *march)
+static __attribute__((noinline)) void take_moments_shaded(struct lanes_march *march, int sets)
 {
-    many_take(march, true, false);
+    many_take(march, sets, true, false);
 }
-static __attribute__((noinline)) void take_mean(struct lanes_march *march)
+static __attribute__((noinline)) void take_mean(struct lanes_march *march, int sets)
 {
-    many_take(march, false, true);
+    many_take(march, sets, false, true);
 }
-static __attribute__((noinline)) void take_mean_shaded(struct lanes_march *march)
+static __attribute__((noinline)) void take_mean_shaded(struct lanes_march *march, int sets)
 {
-    many_take(march, true, true);
+    many_take(march, sets, true, true);
 }
 
 /* To the arrays' begin. */
@@ -165,12 +165,10 @@ static inline void met_move(struct lanes_met *met)
 /* The rest, filled up with what hides nothing. */
 static inline void met_fill(struct lanes_met *met)
 {
-    for (int at = 0; at < MANY; at += LANES) {
-        lanes_int_store(met->keys + met->last + at, (lanes_int){0} + met->keys[met->first]);
-        lanes_int_store(met->places + met->last + at, (lanes_int){0} + met->places[met->first]);
-        lanes_store(met->lengths_m + met->last + at, lanes_all(0));
-        lanes_store(met->middles_m + met->last + at, lanes_all(met->middles_m[met->first]));
-    }
+    lanes_int_store(met->keys + met->last, (lanes_int){0} + met->keys[met->first]);
+    lanes_int_store(met->places + met->last, (lanes_int){0} + met->places[met->first]);
+    lanes_store(met->lengths_m + met->last, lanes_all(0));
+    lanes_store(met->middles_m + met->last, lanes_all(met->middles_m[met->first]));
 }
 
 /* Along no ray of the rectangle a voxel's side is shorter: slopes are greatest at its corners. */
@@ -241,13 +239,13 @@ static inline __attribute__((always_inline)) int march_rays_of(const struct marc
             any = true;
         }
         for (; march.met.last - march.met.first >= MANY; march.met.first += MANY)
-            march.take(&march);
+            march.take(&march, MANY / LANES);
         if (march.met.last > MET_MAX - TURNS * SETS * LANES)
             met_move(&march.met);
     } while (any);
     if (march.met.first < march.met.last) {
         met_fill(&march.met);
-        march.take(&march);
+        march.take(&march, (march.met.last - march.met.first + LANES - 1) / LANES);
     }
     rays->lookups += lookups;
     return march.closed;
