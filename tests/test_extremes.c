@@ -154,8 +154,7 @@ static void stand_judge(struct stand *stand, const char *const *options, size_t 
 }
 
 /* Along and between directions. Limits are those of 16 to 32 slices and 64 voxels. Between their
- * directions slices show gaps and take another share of light; jakulin has vertical slices alone:
- * from straight above they are seen edge-on, and of its crown nothing is left. */
+ * directions slices show gaps and take another share of light. */
 static void look_around(struct stand *stand)
 {
     static const struct fault level[SUBJECTS] = {{0.09, 0.1, 0.09},
@@ -173,7 +172,7 @@ static void look_around(struct stand *stand)
                                                  {0.12, 0.13, 0.08},
                                                  {0.08, 0.1, 0.05},
                                                  {0.08, 0.09, 0.05}},
-                              above[SUBJECTS] = {{0.9, 0.9, 0.1},
+                              above[SUBJECTS] = {{0.08, 0.09, 0.06},
                                                  {0.08, 0.08, 0.06},
                                                  {0.08, 0.08, 0.06},
                                                  {0.08, 0.09, 0.06},

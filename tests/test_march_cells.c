@@ -169,6 +169,26 @@ static void test_march_cells__a_far_forest_looks_as_its_trees_one_by_one(void **
     arena_destroy(world.arena);
 }
 
+/* As large as trees of cells become, each hides much of a pixel, and what several hide adds up to
+ * more than their areas say: cells have to know. */
+static void test_march_cells__trees_of_nearly_a_pixel_hide_as_much_together_as_alone(void **state)
+{
+    (void)state;
+    struct world world = world_of_forest(31000, 300, 11);
+    double covers[2];
+    world_look(&world, 0, 1955, 1275, 0, 2, 0);
+    for (int cells = 0; cells < 2; cells++) {
+        struct drawn drawn = draw(&world, cells, NULL, 2);
+        double means[4];
+        means_of(drawn.rgba, means);
+        covers[cells] = means[3];
+    }
+    if (!(covers[0] > 0.3 && covers[0] < 0.9 && fabs(covers[1] / covers[0] - 1) < 0.015 &&
+          covers[1] != covers[0]))
+        fail_msg("cells cover %g, their trees one by one %g", covers[1], covers[0]);
+    arena_destroy(world.arena);
+}
+
 static void test_march_cells__threads_and_instruction_sets_change_no_byte(void **state)
 {
     (void)state;
@@ -286,6 +306,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_march_cells__a_far_forest_covers_what_trees_at_random_do),
         cmocka_unit_test(test_march_cells__a_far_forest_looks_as_its_trees_one_by_one),
+        cmocka_unit_test(test_march_cells__trees_of_nearly_a_pixel_hide_as_much_together_as_alone),
         cmocka_unit_test(test_march_cells__threads_and_instruction_sets_change_no_byte),
         cmocka_unit_test(
             test_march_cells__trees_of_a_few_pixels_show_the_mean_of_what_is_in_a_pixel),

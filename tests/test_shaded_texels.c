@@ -203,6 +203,34 @@ static void test_shaded_texels__fog_takes_what_the_law_of_beer_lambert_says(void
     }
 }
 
+/* Of what a pixel shows in part, as much fog as is covered, though many slices cover it: from 300 m
+ * a tree is everywhere as far away, within 1 %. */
+static void test_shaded_texels__fog_covers_no_more_than_the_slices(void **state)
+{
+    struct fixture *f = *state;
+    struct scene *scene = tree_scene(f->arena, f->plant, 1, 0);
+    scene->fog.density_per_m = 0.002f;
+    struct view view = tree_view(scene, 0.4f, 0.2f, 300, 9);
+    struct frame *clear = tree_draw(f->arena, f->method, "slices=32", scene, lit, &view, NULL);
+    struct frame *fog =
+        tree_draw(f->arena, f->method, "slices=32", scene, lit | EFFECT_FOG, &view, NULL);
+    const double share = exp(-0.002 * 300);
+    size_t parts = 0;
+    for (int i = 0; i < TREE_PIXELS; i++) {
+        double covered = clear->rgba[4 * i + 3];
+        parts += covered > 0.05 && covered < 0.8;
+        for (int c = 0; c < 3; c++) {
+            double wants = share * clear->rgba[4 * i + c] +
+                           (1 - share) * covered * (double)scene->fog.color[c] +
+                           (1 - covered) * (double)fog->rgba[c]; /* a corner's: the sky's */
+            if (fabs(fog->rgba[4 * i + c] - wants) > 0.01)
+                fail_msg("pixel %d, channel %d, %.3f covered: %.4f, by the law %.4f", i, c, covered,
+                         (double)fog->rgba[4 * i + c], wants);
+        }
+    }
+    assert_true(parts > 100);
+}
+
 static void test_shaded_texels__naive_and_fast_draw_the_same_picture(void **state)
 {
     struct fixture *f = *state;
@@ -244,14 +272,16 @@ static void test_shaded_texels__one_slice_and_five_hundred_and_twelve_are_drawn(
                                           "slices=512,resolution=64",
                                           "slices=512,resolution=64,interpolate=on",
                                           "slices=1,interpolate=on",
-                                          "slices=2,cut=clip"};
+                                          "slices=2,cut=clip",
+                                          "slices=2"};
+    struct frame *drawn[sizeof options / sizeof *options];
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
-        double ratio =
-            tree_mean(tree_draw(f->arena, f->method, options[i], scene, lit, &view, NULL), 3) /
-            tree_mean(truth, 3);
+        drawn[i] = tree_draw(f->arena, f->method, options[i], scene, lit, &view, NULL);
+        double ratio = tree_mean(drawn[i], 3) / tree_mean(truth, 3);
         if (fabs(ratio - 1) > 0.2)
             fail_msg("%s: %.3f of the coverage", options[i], ratio);
     }
+    assert_true(tree_difference(drawn[5], drawn[6], false) > 1e-4); /* leaves are cut in two */
 }
 
 /* From straight on all slices lie behind each other, so more of them show the same: opacity
@@ -304,6 +334,37 @@ static void test_shaded_texels__smooth_changes_do_not_jump(void **state)
     if (worst[0] < 4 * mean[0] || worst[1] > 2 * mean[1])
         fail_msg("worst and mean change: %g %g, smooth %g %g", worst[0], mean[0], worst[1],
                  mean[1]);
+}
+
+/* Two boards, one behind the other: the nearer one is seen, whichever is listed first. */
+static void test_shaded_texels__a_nearer_tree_hides_a_farther_one(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const options[] = {"slices=8,resolution=32",
+                                          "slices=8,resolution=32,path=naive",
+                                          "slices=8,resolution=32,front=2"};
+    for (int k = 0; k < 6; k++) {
+        struct scene *scene =
+            tree_scene(f->arena, board_plant(f->arena, 2, 1, MATERIAL_LEAF), 2, 0);
+        struct species *species = ARENA_ARRAY(f->arena, struct species, 2);
+        struct plant *other = board_plant(f->arena, 2, 1, MATERIAL_LEAF);
+        const struct mesh *mesh;
+        assert_int_equal(plant_mesh(other, &mesh, NULL), STATUS_OK);
+        mesh->materials->albedo[0] = 0;
+        species[0] = species[1] = scene->species[0];
+        species[1].plant = other;
+        scene->species = species;
+        scene->species_count = 2;
+        bool first_is_near = k & 1;
+        scene->instances[0].position_m[2] = first_is_near ? 4 : -4;
+        scene->instances[1].species = 1;
+        struct view view = tree_view(scene, 0, 0, 300, 9);
+        const float *pixel =
+            middle_of(tree_draw(f->arena, f->method, options[k / 2], scene, lit, &view, NULL));
+        if ((pixel[0] > 0.05f) != first_is_near || pixel[1] < 0.05f)
+            fail_msg("%s: the nearer one is number %d; red %.3f", options[k / 2], !first_is_near,
+                     (double)pixel[0]);
+    }
 }
 
 /* One tree inside another, and two that overlap: what is seen is the union. */
@@ -397,8 +458,8 @@ static void test_shaded_texels__a_thousand_trees_take_a_few_draw_calls(void **st
     }
     struct view view = tree_view(scene, 0.3f, 0.4f, 150, 60);
     struct gl_counters counters[2];
-    tree_draw_as(f->arena, f->method, "resolution=64", LOD_AUTO, TARGET_RGBA16F, scene, lit, &view,
-                 &counters[0]);
+    tree_draw_as(f->arena, f->method, "resolution=64,distant=0", LOD_AUTO, TARGET_RGBA16F, scene,
+                 lit, &view, &counters[0]);
     tree_draw_as(f->arena, f->method, "resolution=64,path=naive", LOD_AUTO, TARGET_RGBA16F, scene,
                  lit, &view, &counters[1]);
     assert_true(counters[0].draw_calls <= 8);
@@ -416,10 +477,12 @@ int main(void)
         cmocka_unit_test(test_shaded_texels__normals_of_length_1_do_not_scatter),
         cmocka_unit_test(test_shaded_texels__light_follows_the_sun_as_the_reference_does),
         cmocka_unit_test(test_shaded_texels__fog_takes_what_the_law_of_beer_lambert_says),
+        cmocka_unit_test(test_shaded_texels__fog_covers_no_more_than_the_slices),
         cmocka_unit_test(test_shaded_texels__naive_and_fast_draw_the_same_picture),
         cmocka_unit_test(test_shaded_texels__one_slice_and_five_hundred_and_twelve_are_drawn),
         cmocka_unit_test(test_shaded_texels__interpolated_slices_keep_the_opacity),
         cmocka_unit_test(test_shaded_texels__smooth_changes_do_not_jump),
+        cmocka_unit_test(test_shaded_texels__a_nearer_tree_hides_a_farther_one),
         cmocka_unit_test(test_shaded_texels__trees_in_each_other_cover_as_in_the_reference),
         cmocka_unit_test(test_shaded_texels__an_eye_in_the_crown_sees_the_crown),
         cmocka_unit_test(test_shaded_texels__terrain_in_front_hides_and_behind_does_not),
