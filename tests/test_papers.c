@@ -405,6 +405,47 @@ static void test_papers__claims_without_tables_stand_beside_a_run_that_decides_o
     assert_int_equal(count, 0);
 }
 
+/* Levels and needles alone on a walk: a claim of the conifers' paper, none of its tables; on their
+ * landscape it would be no claim of its own. */
+static void test_papers__a_claim_on_a_scene_of_no_table_stands_alone(void **state)
+{
+    static const char *const options[] = {"", "level=needle"};
+    struct error error = {0};
+    struct paper paper;
+    if (paper_read(*state, "reports/papers/hattab-babahenini-djedi.json", &paper, &error))
+        fail_msg("%s", error.text);
+    struct run *run = make_run(*state, "x", ROUNDS);
+    run->results_count = 0;
+    for (size_t i = 0; i < 2; i++) {
+        const struct kind kind = {.scene = "pines-walk",
+                                  .method = "conifers",
+                                  .options = options[i],
+                                  .trees = 24,
+                                  .lod = LOD_AUTO,
+                                  .rate = i ? 1 : 3,
+                                  .wobble = 1.01};
+        add(*state, run, &kind, ROUNDS);
+    }
+    size_t count, saves = 0;
+    struct paper_beside *beside = papers_beside(book_make(*state, run), &paper, 1, &count);
+    assert_int_equal(count, 1);
+    assert_int_equal(beside->blocks_count, 0);
+    for (size_t i = 0; i < beside->findings_count; i++)
+        if (strcmp(beside->findings[i].claim->id, "conifer-lod-saves") == 0) {
+            assert_int_equal(beside->findings[i].verdict, PAPER_HOLDS);
+            near(beside->findings[i].ours.value, 3);
+            saves++;
+        }
+    assert_int_equal(saves, 1);
+    for (size_t i = 0; i < paper.claims_count; i++)
+        if (paper.claims[i].of.scene)
+            paper.claims[i].of.scene = "pines";
+    for (size_t i = 0; i < run->results_count; i++)
+        run->results[i].cell.scene = "pines";
+    papers_beside(book_make(*state, run), &paper, 1, &count);
+    assert_int_equal(count, 0);
+}
+
 static void test_papers__a_variant_of_one_printed_row_has_no_table(void **state)
 {
     struct arena *arena = *state;
@@ -557,6 +598,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(test_papers__one_and_two_rounds_leave_every_claim_open),
         cmocka_unit_test(test_papers__a_run_without_a_printed_cell_has_no_section),
         cmocka_unit_test(test_papers__claims_without_tables_stand_beside_a_run_that_decides_one),
+        cmocka_unit_test(test_papers__a_claim_on_a_scene_of_no_table_stands_alone),
         cmocka_unit_test(test_papers__a_variant_of_one_printed_row_has_no_table),
         cmocka_unit_test(test_papers__worst_and_best_are_the_slowest_and_fastest_frames),
         cmocka_unit_test(test_papers__a_law_is_judged_by_its_residuals),

@@ -120,7 +120,8 @@ struct paper_beside {
     struct paper_finding *findings;
 };
 
-/* The papers of which the run has a variant with cells for two rows of a printed table. */
+/* The papers of which the run has a variant with cells for two rows of a printed table, or cells
+ * for a claim about a scene that no table has. */
 struct paper_beside *papers_beside(const struct book *book, const struct paper *papers,
                                    size_t papers_count, size_t *count);
 /* A paper's claims, judged; in the order of the file. */

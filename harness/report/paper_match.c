@@ -236,11 +236,24 @@ static size_t find_blocks(struct bench *bench, const struct paper_table *table,
     return count;
 }
 
-/* A paper without tables stands beside a run that has cells for one of its claims. */
+/* Whether a claim names a scene that none of the paper's tables has. */
+static bool is_apart(const struct paper *paper, const struct paper_claim *claim)
+{
+    bool apart = !paper->tables_count || claim->of.scene;
+    for (size_t t = 0; t < paper->tables_count && apart; t++)
+        for (size_t i = 0; i < paper->tables[t].rows_count && apart; i++) {
+            const char *scene = paper->tables[t].rows[i].cell.scene;
+            apart = !scene || strcmp(scene, claim->of.scene) != 0;
+        }
+    return apart;
+}
+
+/* A run without a printed row has cells for one of the paper's claims: of any where it has no
+ * tables, else of one that they say nothing of. */
 static bool decides(const struct paper_beside *beside)
 {
     for (size_t i = 0; i < beside->findings_count; i++)
-        if (beside->findings[i].pairs)
+        if (beside->findings[i].pairs && is_apart(beside->paper, beside->findings[i].claim))
             return true;
     return false;
 }
@@ -259,8 +272,6 @@ struct paper_beside *papers_beside(const struct book *book, const struct paper *
         for (size_t t = 0; t < papers[i].tables_count; t++)
             beside->blocks_count +=
                 find_blocks(&bench, &papers[i].tables[t], beside->blocks + beside->blocks_count);
-        if (!beside->blocks_count && papers[i].tables_count)
-            continue;
         beside->findings = paper_judge(book, &papers[i], &beside->findings_count);
         *count += beside->blocks_count || decides(beside);
     }
