@@ -405,27 +405,32 @@ static void test_papers__claims_without_tables_stand_beside_a_run_that_decides_o
     assert_int_equal(count, 0);
 }
 
+static void add_conifers(struct arena *arena, struct run *run, const char *scene,
+                         const char *options, size_t trees, double rate)
+{
+    const struct kind kind = {scene, "conifers", options, trees, LOD_AUTO, rate, 1.01, false};
+    add(arena, run, &kind, ROUNDS);
+}
+
+static struct paper conifers_paper(struct arena *arena)
+{
+    struct error error = {0};
+    struct paper paper;
+    if (paper_read(arena, "reports/papers/hattab-babahenini-djedi.json", &paper, &error))
+        fail_msg("%s", error.text);
+    return paper;
+}
+
 /* Levels and needles alone on a walk: a claim of the conifers' paper, none of its tables; on their
  * landscape it would be no claim of its own. */
 static void test_papers__a_claim_on_a_scene_of_no_table_stands_alone(void **state)
 {
     static const char *const options[] = {"", "level=needle"};
-    struct error error = {0};
-    struct paper paper;
-    if (paper_read(*state, "reports/papers/hattab-babahenini-djedi.json", &paper, &error))
-        fail_msg("%s", error.text);
+    struct paper paper = conifers_paper(*state);
     struct run *run = make_run(*state, "x", ROUNDS);
     run->results_count = 0;
-    for (size_t i = 0; i < 2; i++) {
-        const struct kind kind = {.scene = "pines-walk",
-                                  .method = "conifers",
-                                  .options = options[i],
-                                  .trees = 24,
-                                  .lod = LOD_AUTO,
-                                  .rate = i ? 1 : 3,
-                                  .wobble = 1.01};
-        add(*state, run, &kind, ROUNDS);
-    }
+    for (size_t i = 0; i < 2; i++)
+        add_conifers(*state, run, "pines-walk", options[i], 24, i ? 1 : 3);
     size_t count, saves = 0;
     struct paper_beside *beside = papers_beside(book_make(*state, run), &paper, 1, &count);
     assert_int_equal(count, 1);
@@ -495,22 +500,12 @@ static void test_papers__a_law_is_judged_by_its_residuals(void **state)
 {
     static const size_t trees[] = {36, 40, 51, 68, 85, 102, 113, 204};
     for (int exponential = 0; exponential < 2; exponential++) {
-        struct error error = {0};
-        struct paper paper;
-        if (paper_read(*state, "reports/papers/hattab-babahenini-djedi.json", &paper, &error))
-            fail_msg("%s", error.text);
+        struct paper paper = conifers_paper(*state);
         struct run *run = make_run(*state, "x", ROUNDS);
         run->results_count = 0;
         for (size_t i = 0; i < sizeof trees / sizeof *trees; i++) {
             double n = (double)trees[i], seconds = exponential ? exp(0.01 * n) : 2 + 0.1 * n;
-            const struct kind kind = {.scene = "pines",
-                                      .method = "conifers",
-                                      .options = "",
-                                      .trees = trees[i],
-                                      .lod = LOD_AUTO,
-                                      .rate = 1 / seconds,
-                                      .wobble = 1.01};
-            add(*state, run, &kind, ROUNDS);
+            add_conifers(*state, run, "pines", "", trees[i], 1 / seconds);
         }
         size_t count;
         struct book *book = book_make(*state, run);
@@ -536,21 +531,12 @@ static void test_papers__a_variant_has_one_number_in_all_tables(void **state)
         const char *scene;
         size_t trees;
     } cells[] = {{"pine-16-8-16", 1}, {"pine-16-8-20", 1}, {"pines", 36}, {"pines", 40}};
-    struct error error = {0};
-    struct paper paper;
-    if (paper_read(*state, "reports/papers/hattab-babahenini-djedi.json", &paper, &error))
-        fail_msg("%s", error.text);
+    struct paper paper = conifers_paper(*state);
     struct run *run = make_run(*state, "x", ROUNDS);
     run->results_count = 0;
     for (size_t i = 0; i < 8; i++) {
-        const struct kind kind = {.scene = cells[i / 2].scene,
-                                  .method = "conifers",
-                                  .options = options[(i + (i > 3)) % 2],
-                                  .trees = cells[i / 2].trees,
-                                  .lod = LOD_AUTO,
-                                  .rate = 1,
-                                  .wobble = 1.01};
-        add(*state, run, &kind, ROUNDS);
+        add_conifers(*state, run, cells[i / 2].scene, options[(i + (i > 3)) % 2],
+                     cells[i / 2].trees, 1);
     }
     size_t count, firsts = 0;
     struct paper_beside *beside = papers_beside(book_make(*state, run), &paper, 1, &count);
