@@ -110,6 +110,11 @@ static void test_stochastic__rules_are_drawn_by_weight_and_by_seed(void **state)
     }
     assert_int_equal(strlen(one), 900 * 4);
     assert_float_equal(second / 900, 0.25, 4 * sqrt(0.25 * 0.75 / 900));
+    assert_string_equal(derived(*state,
+                                "{\"axiom\": \"A\", \"rules\": ["
+                                "{\"of\": \"A\", \"weight\": 0, \"to\": \"f(1)\"}]}",
+                                NULL),
+                        "A");
 }
 
 static void refused(struct arena *arena, const char *text, const char *words)
