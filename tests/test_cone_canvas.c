@@ -1,0 +1,125 @@
+/* Relief and trees in one cone: where an edge of relief crosses a pixel, the pixel is the mean of
+ * 4 x 4 of its parts, each of which has one depth. */
+#include "conifer_world.h"
+
+#include "base/random.h"
+
+enum { WIDTH = 36, HEIGHT = 34, FINE = 4 };
+
+/* A hedge of twigs behind a slanted ridge, which hides some of it; before a hill or a black sky. */
+static struct world ridge(int fine, bool trees, bool hill)
+{
+    enum { COUNT = 120 };
+    struct world world = world_create(WIDTH * fine, HEIGHT * fine, 0.5);
+    struct terrain *terrain = &world.scene.terrain;
+    struct conifer_twig twigs[COUNT];
+    struct random random = random_seed(5, 1);
+    for (int k = 0; k < COUNT; k++) {
+        twigs[k] = twig_along(random_double(&random) - 0.5, 1, 0.3);
+        twigs[k].base_m[0] = 0.02f * (float)k - 1.2f;
+        twigs[k].base_m[1] =
+            0.3f + 0.2125f * twigs[k].base_m[0]; /* the ridge is seen 0.15 m above */
+        twigs[k].needle_radius_m = 0.002f;
+    }
+    if (trees)
+        plant_add(&world, plant_of(world.arena, twigs, COUNT));
+    world_ground(&world, 8, 0.4f);
+    terrain->samples_z = 5;
+    terrain->heights_m = ARENA_ARRAY(world.arena, float, 10);
+    terrain->normals = arena_alloc(world.arena, 10, sizeof *terrain->normals);
+    for (int i = 0; i < 10; i++) {
+        terrain->heights_m[i] = i / 2 == 3 ? (i % 2 ? 1.5f : -0.2f) : i < 2 && hill ? 2.5f : -1.5f;
+        terrain->normals[i][i < 6 ? 2 : 1] = 1; /* what is behind the ridge is darker */
+    }
+    world_look(&world, 0, 0.9f, 4.5f, 0, 0.5f, 0);
+    world_sun(&world, 0.5, 0.7, 0.3);
+    return world;
+}
+
+static struct frame *picture(struct world *world, bool edges)
+{
+    struct cones_options options = options_of(CONE_NEEDLE);
+    options.edges = edges;
+    options.shadows = false;
+    return drawn(world, &options, 0, 2);
+}
+
+/* The mean over a pixel's parts. */
+static double part_mean(const struct frame *fine, size_t pixel, int channel)
+{
+    double sum = 0;
+    for (size_t k = 0; k < FINE * FINE; k++) {
+        size_t x = FINE * (pixel % WIDTH) + k % FINE, y = FINE * (pixel / WIDTH) + k / FINE;
+        sum += fine->rgba[4 * (y * FINE * WIDTH + x) + (size_t)channel];
+    }
+    return sum / (FINE * FINE);
+}
+
+static void check_parts(bool hill)
+{
+    struct world world = ridge(1, false, hill), parts = ridge(FINE, false, hill);
+    struct frame *cut = picture(&world, true), *whole = picture(&world, false);
+    struct frame *fine = picture(&parts, false);
+    int edges = 0, coarse = 0, missed = 0;
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        double truth = part_mean(fine, i, 0);
+        missed += fabs(cut->rgba[4 * i] - truth) > 0.02;
+        if (cut->rgba[4 * i] == whole->rgba[4 * i])
+            continue;
+        edges++;
+        coarse += fabs(whole->rgba[4 * i] - truth) > 0.01;
+        if (!(fabs(cut->rgba[4 * i] - truth) < 1e-4))
+            fail_msg("pixel %zu: %g, its parts %g", i, (double)cut->rgba[4 * i], truth);
+    }
+    if (edges <= 20 || coarse <= 15 || missed > 0)
+        fail_msg("%d edges, %d wrong without layers, %d missed", edges, coarse, missed);
+    arena_destroy(world.arena);
+    arena_destroy(parts.arena);
+}
+
+static void test_canvas__an_edge_of_relief_is_the_mean_of_its_parts(void **state)
+{
+    (void)state;
+    check_parts(false);
+    check_parts(true);
+}
+
+/* Trees behind the edge: seen in the part of the pixel that the relief leaves. */
+static void check_trees(bool hill)
+{
+    struct world world = ridge(1, true, hill), parts = ridge(FINE, true, hill);
+    struct world bare = ridge(1, false, hill);
+    struct frame *cut = picture(&world, true), *whole = picture(&world, false);
+    struct frame *fine = picture(&parts, false);
+    struct frame *edge[2] = {picture(&bare, true), picture(&bare, false)};
+    double sum = 0, error[2] = {0, 0};
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        if (edge[0]->rgba[4 * i] == edge[1]->rgba[4 * i])
+            continue;
+        double truth = part_mean(fine, i, 3);
+        sum += truth;
+        error[0] += fabs(cut->rgba[4 * i + 3] - truth);
+        error[1] += fabs(whole->rgba[4 * i + 3] - truth);
+    }
+    if (!(sum > 2 && error[0] < 0.12 * sum && error[0] < 0.4 * error[1]))
+        fail_msg("covered %.2f, off by %.2f, without layers by %.2f", sum, error[0], error[1]);
+    arena_destroy(world.arena);
+    arena_destroy(parts.arena);
+    arena_destroy(bare.arena);
+}
+
+static void test_canvas__an_edge_of_relief_hides_its_part_of_a_tree(void **state)
+{
+    (void)state;
+    check_trees(false);
+    check_trees(true);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_canvas__an_edge_of_relief_is_the_mean_of_its_parts),
+        cmocka_unit_test(test_canvas__an_edge_of_relief_hides_its_part_of_a_tree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
