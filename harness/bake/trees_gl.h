@@ -1,0 +1,35 @@
+/* Trees in view as a shader that marches rays reads them, with their places on the screen. */
+#ifndef TREELINE_BAKE_TREES_GL_H
+#define TREELINE_BAKE_TREES_GL_H
+
+#include "bake/tiles.h"
+#include "bake/voxels_gl.h"
+
+/* A tree as the shader reads it: three texels. */
+struct tree_texels {
+    uint16_t low[2], high[2]; /* pixels, both ends included, row 0 on top */
+    uint32_t first_cell;
+    uint32_t size;   /* three times 10 bits; bit 30: smaller than a pixel; 31: opaque */
+    float where[3];  /* the eye in voxels from the box's corner; of a small tree: its middle on
+                        the screen, from pixel centres, px; its area, px^2 */
+    float per_m;     /* voxels a metre; of a small tree: its depth along the view, m */
+    float turn[2];   /* cosine, sine, both over the stretch */
+    uint32_t shares; /* what fog leaves, and of the optical depth what is drawn: 16 bits each */
+    uint32_t albedo; /* three times 10 bits */
+};
+
+struct trees_gl;
+
+/* bias: added to the level of detail that a pixel asks for. smooth: levels over which one turns
+ * into the next, both being drawn; 0: at once. */
+struct trees_gl *trees_gl_create(struct arena *arena, const struct scene *scene,
+                                 const struct voxels_gl *voxels, float bias, float smooth);
+/* So many texels there are at most: a tree that turns into something else has several. */
+size_t trees_gl_most(const struct trees_gl *trees);
+/* The trees of a list, in its order; returns how many texels and rectangles, which stay valid until
+ * the next call. fog_density_per_m: 0 for none. */
+size_t trees_gl_see(struct trees_gl *trees, const struct view *view, const struct cull_list *list,
+                    float fog_density_per_m, const struct tiles_rect **rects,
+                    const struct tree_texels **texels);
+
+#endif

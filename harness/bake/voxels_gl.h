@@ -1,0 +1,24 @@
+/* The voxels of all species of a scene, as a shader that marches rays reads them. */
+#ifndef TREELINE_BAKE_VOXELS_GL_H
+#define TREELINE_BAKE_VOXELS_GL_H
+
+#include "bake/cull.h"
+#include "bake/voxels.h"
+#include "method/method.h"
+
+struct voxels_gl {
+    size_t species_count;
+    const struct voxels **volumes;              /* one a species */
+    const struct mesh **meshes;                 /* the same */
+    struct cull_bound *bounds;                  /* the same */
+    uint32_t (*first_cells)[VOXELS_LEVELS_MAX]; /* the same: where a level begins in the cells */
+    GLuint cells;                               /* a word each, as voxels_level.cells, all levels of
+                                                   all species in one row; indices into voxels */
+    GLuint voxels;                              /* struct voxel */
+};
+
+/* resolution: voxels along a plant's longest extent; a lower level of detail has fewer. */
+enum status voxels_gl_prepare(struct workspace *workspace, const struct scene *scene,
+                              int resolution, struct voxels_gl **voxels);
+
+#endif
