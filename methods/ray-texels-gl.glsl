@@ -69,14 +69,15 @@ vec3 bytes(uint word)
 
 // What is left of 1 behind `span` voxels of it (a), and its radiance. raise: 1 / stretch^2 - 1; the light of a stretched
 // tree is divided by the length of its normals before they are unit (harness/bake/march_job.c).
-vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both, float raise)
+vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both, float raise, vec3 in_shade, vec3 in_sun,
+                  float sides)
 {
     float depth = uintBitsToFloat(words.x) * sqrt(max(value(eye, words.y), 0.0));
     float seen = max(value(eye, words.z), 1e-4), lit = max(value(sun, words.z), 1e-4);
     float toward = value(both, words.z) * inversesqrt(seen);
-    float one_sided = max(float(words.w >> 28) / 15.0, limits.w);
+    float one_sided = max(float(words.w >> 28) * (1.0 / 15.0), sides);
     float even = 0.63661977 * sqrt(lit) * arc(min(toward * toward / lit, 1.0));
-    float diffuse = (even + 0.5 * one_sided * (toward - even)) / (0.75 + float(words.w >> 24 & 15u) / 60.0);
+    float diffuse = (even + 0.5 * one_sided * (toward - even)) / (0.75 + float(words.w >> 24 & 15u) * (1.0 / 60.0));
 #ifdef STRETCHED
 #ifdef ISOTROPIC
     diffuse *= inversesqrt(1.0 + raise / 3.0);
@@ -84,7 +85,7 @@ vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both, float 
     diffuse *= inversesqrt(1.0 + raise * float(words.z >> 6 & 63u) / 63.0);
 #endif
 #endif
-    return vec4(bytes(words.w) * (ambient + sun_radiance * max(diffuse, 0.0)), exp(-depth * span));
+    return vec4(bytes(words.w) * (in_shade + in_sun * max(diffuse, 0.0)), exp(-depth * span));
 }
 
 // Of what is behind the trees, along the view.
@@ -92,6 +93,22 @@ float depth_at(ivec2 pixel)
 {
     float z = 2.0 * texelFetch(depths, pixel, 0).r - 1.0;
     return z < 1.0 ? depth_terms.y / (depth_terms.x + z) : 1e30;
+}
+
+// Of the tile's entries from `entry` to `end` the first tree whose pixels hold this one, or -1: each lane passes over
+// the others by itself.
+int next_tree(ivec2 at, inout int entry, int end)
+{
+    int tree = -1;
+    do {
+        int next = 3 * int(texelFetch(entries, min(entry, end - 1)).r);
+        uvec2 pixels = texelFetch(trees, next).xy;
+        ivec2 first = ivec2(pixels.x & 65535u, pixels.x >> 16), last = ivec2(pixels.y & 65535u, pixels.y >> 16);
+        bool inside = all(lessThanEqual(first, at)) && all(lessThanEqual(at, last));
+        tree = tree < 0 && entry < end && inside ? next : tree;
+        entry += tree < 0 ? 1 : 0;
+    } while (tree < 0 && entry < end);
+    return tree;
 }
 
 void main()
@@ -107,6 +124,9 @@ void main()
     int tile = at.y / tiling.x * tiling.y + at.x / tiling.x;
     int entry = int(texelFetch(firsts, tile).r), end = int(texelFetch(firsts, tile + 1).r);
     float left = 1.0;
+    // Uniforms are read here: in a loop llvmpipe gathers them lane by lane each time.
+    vec3 in_shade = ambient, in_sun = sun_radiance, to_sun = sun_direction, fog = fog_color;
+    float near = limits.x, least = limits.y, long_step = limits.z, short_step = min(limits.z, 1.0), sides = limits.w;
     vec3 sum = vec3(0.0);
 #ifdef COUNT
     uint lookups = 0u;  // a cell is one, a voxel two, as the CPU's march counts them
@@ -114,21 +134,12 @@ void main()
     // A software GL runs both sides of each branch, and the body of a loop once more than its test at the top allows:
     // loops are tested at their end, and what is not met has no share. What is read behind a loop must then be
     // carried by it, each from its own last value (llvmpipe 22 makes the others again, also for lanes that have left).
+    int tree = next_tree(at, entry, end);
     do {
-        // The next tree whose pixels hold this one: each lane passes over the others by itself.
-        int tree = 0;
-        bool held = false;
-        do {
-            int next = 3 * int(texelFetch(entries, min(entry, end - 1)).r);
-            uvec2 pixels = texelFetch(trees, next).xy;
-            ivec2 first = ivec2(pixels.x & 65535u, pixels.x >> 16), last = ivec2(pixels.y & 65535u, pixels.y >> 16);
-            tree = held ? tree : next;
-            held = held || (entry < end && all(lessThanEqual(first, at)) && all(lessThanEqual(at, last)));
-            entry += held ? 0 : 1;
-        } while (!held && entry < end);
-        uvec4 place = texelFetch(trees, tree);
-        vec4 where = uintBitsToFloat(texelFetch(trees, tree + 1));
-        uvec4 looks = texelFetch(trees, tree + 2);
+        int first = max(tree, 0);
+        uvec4 place = texelFetch(trees, first);
+        vec4 where = uintBitsToFloat(texelFetch(trees, first + 1));
+        uvec4 looks = texelFetch(trees, first + 2);
         vec2 turn = uintBitsToFloat(looks.xy);
         float clear = float(looks.z & 65535u) / 65535.0;
 #ifdef SMOOTH
@@ -141,7 +152,7 @@ void main()
         rise = length(turn);
         turn /= rise;
 #endif
-        vec3 u = rotate_y(ray, turn.x, -turn.y), l = rotate_y(sun_direction, turn.x, -turn.y);
+        vec3 u = rotate_y(ray, turn.x, -turn.y), l = rotate_y(to_sun, turn.x, -turn.y);
 #ifdef STRETCHED
         u.y *= rise;
         l.y *= rise;
@@ -166,18 +177,18 @@ void main()
             vec3 one = -where.xyz / slow, other = (size - where.xyz) / slow;
             vec3 low = min(one, other), high = max(one, other);
             float scale = speed * where.w;
-            float from = max(max(low.x, limits.x * scale), max(low.y, low.z));
+            float from = max(max(low.x, near * scale), max(low.y, low.z));
             span = min(min(high.x, depth * scale), min(high.y, high.z)) - from;
             start = where.xyz + from * u;
         }
-        if (!held)
+        if (tree < 0)
             span = 0.0;
         float thick = (place.w >> 31) != 0u ? SOLID : 1.0;  // the eye is in the tree's bark
         float leap = 1.0 / max(abs(u.x), max(abs(u.y), abs(u.z)));
         ivec3 grid = ivec3(size);
         vec3 most = size - 0.5;
         vec3 gathered = vec3(0.0);
-        float before = left, stride = min(limits.z, 1.0);  // from empty space on no voxel is jumped over
+        float before = left, stride = short_step;  // from empty space on no voxel is jumped over
         do {
             // Through empty space.
             uint cell = 0u;
@@ -192,26 +203,27 @@ void main()
                 cell = texelFetch(cells, int(place.z) + (p.z * grid.y + p.y) * grid.x + p.x).r;
                 if (cell < FIRST) {
                     along = max(along + stride, middle + (float(cell) - 1.0) * leap);
-                    stride = min(limits.z, 1.0);
+                    stride = short_step;
                 }
             }
             bool empty = cell < FIRST;
             vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)),
                                     empty ? 0.0 : drawn * thick * pace, f_eye,
-                                    f_sun, f_both, rise * rise - 1.0);
+                                    f_sun, f_both, rise * rise - 1.0, in_shade, in_sun, sides);
 #ifdef COUNT
             lookups += empty || pace == 0.0 ? 0u : 2u;
 #endif
             along += empty ? 0.0 : stride;
-            stride = empty ? stride : limits.z;
+            stride = empty ? stride : long_step;
             float share = min(left * (1.0 - met.a) * weight, left);
             left -= share;
             gathered += share * met.rgb;
-        } while (along < span && left > limits.y);
-        sum += clear * white * gathered + (before - left) * (1.0 - clear) * fog_color;
+        } while (along < span && left > least);
+        sum += clear * white * gathered + (before - left) * (1.0 - clear) * fog;
         entry++;
-    } while (entry < end && left > limits.y);
-    if (left <= limits.y) {  // what was left would have been more of the same
+        tree = next_tree(at, entry, end);
+    } while (tree >= 0 && left > least);
+    if (left <= least) {  // what was left would have been more of the same
         sum /= 1.0 - left;
         left = 0.0;
     }
