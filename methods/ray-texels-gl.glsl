@@ -15,7 +15,7 @@ void main()
 #pragma stage fragment
 layout(binding = 0) uniform usamplerBuffer cells;    // index or distance of each voxel
 layout(binding = 1) uniform usamplerBuffer voxels;   // 16 bytes each
-layout(binding = 2) uniform usamplerBuffer trees;    // three texels a tree
+layout(binding = 2) uniform usamplerBuffer trees;    // four texels a tree, harness/bake/trees_gl.h
 layout(binding = 3) uniform usamplerBuffer firsts;   // of each tile's entries
 layout(binding = 4) uniform usamplerBuffer entries;  // trees, tile by tile
 layout(binding = 5) uniform sampler2D depths;
@@ -101,10 +101,16 @@ int next_tree(ivec2 at, inout int entry, int end)
 {
     int tree = -1;
     do {
-        int next = 3 * int(texelFetch(entries, min(entry, end - 1)).r);
-        uvec2 pixels = texelFetch(trees, next).xy;
-        ivec2 first = ivec2(pixels.x & 65535u, pixels.x >> 16), last = ivec2(pixels.y & 65535u, pixels.y >> 16);
-        bool inside = all(lessThanEqual(first, at)) && all(lessThanEqual(at, last));
+        int next = 4 * int(texelFetch(entries, min(entry, end - 1)).r);
+        uvec4 bounds = texelFetch(trees, next);
+        uvec2 others = texelFetch(trees, next + 1).xy;
+        float lean = uintBitsToFloat(bounds.y), spread = uintBitsToFloat(bounds.z);
+        int row = at.y - int(bounds.x & 65535u);
+        float upright = float(4 * at.x + BIAS) - lean * float(row), wide = spread * float(row);
+        vec3 across = clamp(vec3(upright, upright + wide, upright - wide), 0.0, 65535.0);
+        vec3 low = vec3(bounds.w & 65535u, others & 65535u), high = vec3(bounds.w >> 16, others >> 16);
+        bool inside = row >= 0 && at.y <= int(bounds.x >> 16) && all(lessThanEqual(low, across)) &&
+                      all(lessThanEqual(across, high));
         tree = tree < 0 && entry < end && inside ? next : tree;
         entry += tree < 0 ? 1 : 0;
     } while (tree < 0 && entry < end);
@@ -137,9 +143,9 @@ void main()
     int tree = next_tree(at, entry, end);
     do {
         int first = max(tree, 0);
-        uvec4 place = texelFetch(trees, first);
-        vec4 where = uintBitsToFloat(texelFetch(trees, first + 1));
-        uvec4 looks = texelFetch(trees, first + 2);
+        uvec4 place = texelFetch(trees, first + 1);
+        vec4 where = uintBitsToFloat(texelFetch(trees, first + 2));
+        uvec4 looks = texelFetch(trees, first + 3);
         vec2 turn = uintBitsToFloat(looks.xy);
         float clear = float(looks.z & 65535u) / 65535.0;
 #ifdef SMOOTH

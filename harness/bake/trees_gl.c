@@ -84,6 +84,98 @@ static void place_small(const struct picture *picture, const struct march_tree *
     texels->per_m = depth;
 }
 
+/* A row of the frame: an axis of the screen times a length, and of the view's, for voxels of a
+ * box. */
+static void frame_row(const struct march_box *box, const uint32_t size[3], const float axis[3],
+                      float row[4])
+{
+    row[3] = 0;
+    for (int i = 0; i < 3; i++)
+        row[3] += axis[i] * box->middle_m[i];
+    for (int k = 0; k < 3; k++) {
+        float half = 0;
+        for (int i = 0; i < 3; i++)
+            half += axis[i] * box->half_m[k][i];
+        row[k] = 2 * half / (float)size[k];
+        row[3] -= half;
+    }
+}
+
+static struct hull_frame frame_of(const struct picture *picture, const struct march_box *box,
+                                  const uint32_t size[3])
+{
+    const struct view *view = picture->view;
+    const float middle_px[2] = {0.5f * (float)(view->width_px - 1),
+                                0.5f * (float)(view->height_px - 1)};
+    float across[3], down[3];
+    for (int i = 0; i < 3; i++) {
+        across[i] = picture->focal_px * view->right[i] + middle_px[0] * view->forward[i];
+        down[i] = -picture->focal_px * view->up[i] + middle_px[1] * view->forward[i];
+    }
+    struct hull_frame frame;
+    frame_row(box, size, across, frame.across);
+    frame_row(box, size, down, frame.down);
+    frame_row(box, size, view->forward, frame.depth);
+    return frame;
+}
+
+static uint16_t quarters(float at_px, float (*round)(float))
+{
+    return (uint16_t)fminf(fmaxf(round(4 * at_px) + TREE_TEXELS_BIAS, 0), 65535);
+}
+
+/* A rectangle as bounds that do not lean. */
+static void bound_rect(const struct tiles_rect *rect, struct tree_texels *texels)
+{
+    texels->rows[0] = (uint16_t)rect->low[1];
+    texels->rows[1] = (uint16_t)rect->high[1];
+    texels->lean = texels->spread = 0;
+    for (int i = 0; i < 3; i++) {
+        texels->bounds[i][0] = quarters(rect->low[0], floorf);
+        texels->bounds[i][1] = quarters(rect->high[0], ceilf);
+    }
+}
+
+/* The bounds of a silhouette, which are of its own first row, from the first one in the picture
+ * on. */
+static void bound_silhouette(const struct silhouette *silhouette, const struct tiles_rect *rect,
+                             struct tree_texels *texels)
+{
+    const float spread = silhouette->spread, slopes[3] = {0, -spread, spread};
+    bound_rect(rect, texels);
+    texels->lean = 4 * silhouette->lean;
+    texels->spread = 4 * spread;
+    for (int i = 0; i < 3; i++) {
+        float way = (silhouette->lean + slopes[i]) * ((float)rect->low[1] - silhouette->low[1]);
+        texels->bounds[i][0] = quarters(silhouette->bounds[i][0] + way, floorf);
+        texels->bounds[i][1] = quarters(silhouette->bounds[i][1] + way, ceilf);
+    }
+}
+
+/* The pixels that a level's voxels may be seen in; of a tree around the near plane all that its box
+ * is in. */
+static void place(const struct picture *picture, const struct march_outline *outline,
+                  const struct march_box *box, const uint32_t size[3], const struct hull *hull,
+                  struct tiles_rect *rect, struct tree_texels *texels)
+{
+    const int size_px[2] = {picture->view->width_px, picture->view->height_px};
+    struct silhouette silhouette;
+    const float *low = outline->low, *high = outline->high;
+    if (outline->before && hull->count) {
+        const struct hull_frame frame = frame_of(picture, box, size);
+        silhouette_of(hull, &frame, &silhouette);
+        low = silhouette.low;
+        high = silhouette.high;
+    }
+    for (int i = 0; i < 2; i++)
+        rect_between(rect, i, ceilf(low[i]), floorf(high[i]),
+                     outline->any && hull->count ? size_px[i] : 0);
+    if (low == silhouette.low)
+        bound_silhouette(&silhouette, rect, texels);
+    else
+        bound_rect(rect, texels);
+}
+
 static uint32_t pack_10(const uint32_t values[3])
 {
     return values[0] | values[1] << 10 | values[2] << 20;
@@ -136,21 +228,16 @@ static void see(const struct trees_gl *trees, const struct picture *picture, uin
     const float voxel_m = tree->scale * grid->voxel_m;
     if (piece->small) {
         place_small(picture, tree, &outline, &box, voxel_m, rect, texels);
+        bound_rect(rect, texels);
     } else {
         texels->per_m = 1 / voxel_m;
         march_eye_of(view, tree, volume, piece->level, texels->per_m, texels->where);
-        const int size_px[2] = {view->width_px, view->height_px};
-        for (int i = 0; i < 2; i++)
-            rect_between(rect, i, ceilf(outline.low[i]), floorf(outline.high[i]),
-                         outline.any ? size_px[i] : 0);
+        place(picture, &outline, &box, grid->size,
+              &trees->voxels->hulls[tree->species][piece->level], rect, texels);
     }
     uint32_t albedo[3];
     for (int c = 0; c < 3; c++)
         albedo[c] = (uint32_t)(volume->albedo[c] * 1023 + 0.5f);
-    for (int i = 0; i < 2; i++) {
-        texels->low[i] = (uint16_t)rect->low[i];
-        texels->high[i] = (uint16_t)rect->high[i];
-    }
     bool within =
         !outline.before && march_within_bark(view, tree, trees->voxels->meshes[tree->species]);
     texels->first_cell = trees->voxels->first_cells[tree->species][piece->level];

@@ -52,6 +52,7 @@ enum status voxels_gl_prepare(struct workspace *workspace, const struct scene *s
     all->bounds = ARENA_ARRAY(arena, struct cull_bound, count);
     all->volumes = ARENA_ARRAY(arena, const struct voxels *, count);
     all->meshes = ARENA_ARRAY(arena, const struct mesh *, count);
+    all->hulls = arena_alloc(arena, count, sizeof *all->hulls);
     all->first_cells = arena_alloc(arena, count, sizeof *all->first_cells);
     for (size_t i = 0; i < count; i++) {
         struct plant *plant = scene->species[i].plant;
@@ -61,6 +62,8 @@ enum status voxels_gl_prepare(struct workspace *workspace, const struct scene *s
             status = plant_mesh(plant, &all->meshes[i], workspace->error);
         if (status)
             return status;
+        for (uint32_t k = 0; k < all->volumes[i]->levels_count; k++)
+            hull_of_level(&all->volumes[i]->levels[k], &all->hulls[i][k]);
         all->bounds[i] = cull_bound_of(all->meshes[i]);
     }
     upload(workspace->gl, all);

@@ -3,7 +3,7 @@
 #define TREELINE_BAKE_VOXELS_GL_H
 
 #include "bake/cull.h"
-#include "bake/voxels.h"
+#include "bake/silhouette.h"
 #include "method/method.h"
 
 struct voxels_gl {
@@ -11,6 +11,7 @@ struct voxels_gl {
     const struct voxels **volumes;              /* one a species */
     const struct mesh **meshes;                 /* the same */
     struct cull_bound *bounds;                  /* the same */
+    struct hull (*hulls)[VOXELS_LEVELS_MAX];    /* the same: of each level */
     uint32_t (*first_cells)[VOXELS_LEVELS_MAX]; /* the same: where a level begins in the cells */
     GLuint cells;                               /* a word each, as voxels_level.cells, all levels of
                                                    all species in one row; indices into voxels */
