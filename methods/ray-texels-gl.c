@@ -79,8 +79,9 @@ static enum status make_program(struct workspace *workspace, const struct state 
 {
     struct arena *scratch = arena_create(0);
     const char *defines =
-        arena_printf(scratch, "FIRST 256u\nPROBES 2\nBIAS %d\nSOLID %g\n%s%s%s%s", TREE_TEXELS_BIAS,
-                     (double)march_solid, scene_is_stretched(state->scene) ? "STRETCHED 1\n" : "",
+        arena_printf(scratch, "EMPTY %uu\nPROBES 2\nBIAS %d\nSOLID %g\n%s%s%s%s",
+                     (unsigned)VOXELS_GL_EMPTY, TREE_TEXELS_BIAS, (double)march_solid,
+                     scene_is_stretched(state->scene) ? "STRETCHED 1\n" : "",
                      state->options.smooth > 0 ? "SMOOTH 1\n" : "",
                      state->options.model ? "ISOTROPIC 1\n" : "", counts ? "COUNT 1\n" : "");
     enum status status = gl_program(workspace->gl, "ray-texels-gl", ray_texels_gl_glsl, defines,

@@ -192,28 +192,29 @@ void main()
         float thick = (place.w >> 31) != 0u ? SOLID : 1.0;  // the eye is in the tree's bark
         float leap = 1.0 / max(abs(u.x), max(abs(u.y), abs(u.z)));
         ivec3 grid = ivec3(size);
+        uint octant = (u.x < 0.0 ? 4u : 0u) + (u.y < 0.0 ? 8u : 0u) + (u.z < 0.0 ? 16u : 0u);
         vec3 most = size - 0.5;
         vec3 gathered = vec3(0.0);
         float before = left, stride = short_step;  // from empty space on no voxel is jumped over
         do {
             // Through empty space.
-            uint cell = 0u;
+            uint cell = EMPTY;
             float pace = 0.0;
             for (int probe = 0; probe < PROBES; probe++) {
                 pace = clamp(span - along, 0.0, stride);
                 float middle = along + 0.5 * pace;
                 ivec3 p = ivec3(clamp(start + middle * u, vec3(0.0), most));
 #ifdef COUNT
-                lookups += pace > 0.0 && cell < FIRST ? 1u : 0u;  // else it finds the same again
+                lookups += pace > 0.0 && cell >= EMPTY ? 1u : 0u;  // else it finds the same again
 #endif
                 cell = texelFetch(cells, int(place.z) + (p.z * grid.y + p.y) * grid.x + p.x).r;
-                if (cell < FIRST) {
-                    along = max(along + stride, middle + (float(cell) - 1.0) * leap);
+                if (cell >= EMPTY) {
+                    along = max(along + stride, middle + (float(int(cell >> octant & 15u)) - 1.0) * leap);
                     stride = short_step;
                 }
             }
-            bool empty = cell < FIRST;
-            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell - FIRST)),
+            bool empty = cell >= EMPTY;
+            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell)),
                                     empty ? 0.0 : drawn * thick * pace, f_eye,
                                     f_sun, f_both, rise * rise - 1.0, in_shade, in_sun, sides);
 #ifdef COUNT
