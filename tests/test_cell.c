@@ -7,6 +7,7 @@
 #include "cell/process.h"
 #include "cell/warmup.h"
 
+#include <dlfcn.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -201,7 +202,7 @@ static void test_cell__every_bad_end_has_its_status(void **state)
         int signal;
         const char *message;
     } ends[] = {
-        {"crash", STATUS_CRASH, SIGABRT, "in prepare: about to abort"},
+        {"crash", STATUS_CRASH, SIGABRT, "in prepare: about to abort; crash in "},
         {"exit-0", STATUS_CRASH, 0, "exit code 0 in prepare"},
         {"exit-1", STATUS_CRASH, 0, "exit code 1 in prepare"},
         {"memory", STATUS_MEMORY, 0, "budget of 67108864"},
@@ -348,6 +349,37 @@ static void test_process__hears_lines_and_keeps_the_last_words(void **state)
     arena_destroy(arena);
 }
 
+/* Not static: a crash in it can name it. */
+enum status touches_nothing(void *context, int out);
+enum status touches_nothing(void *context, int out)
+{
+    dprintf(STDERR_FILENO, "about to touch %d\n", out > 0 ? 1 : 0);
+    *(volatile int *)context = 1;
+    return STATUS_OK;
+}
+
+static void test_process__a_crash_tells_where(void **state)
+{
+    (void)state;
+    if (dlsym(RTLD_DEFAULT, "__asan_init"))
+        skip(); /* it tells of crashes itself */
+    struct arena *arena = arena_create(0);
+    struct error error;
+    struct process_outcome outcome;
+    struct process_request request = {.work = touches_nothing, .context = (void *)0xbad0};
+    void (*before)(int) = signal(SIGSEGV, SIG_DFL); /* cmocka has its own */
+    enum status status = process_run(arena, &request, &outcome, &error);
+    signal(SIGSEGV, before);
+    assert_int_equal(status, STATUS_OK);
+    assert_int_equal(outcome.signal, SIGSEGV);
+    static const char start[] = "about to touch 1; crash at address 0xbad0 in test_cell+0x";
+    if (strncmp(outcome.errors, start, strlen(start)) != 0 ||
+        !strstr(outcome.errors, " (touches_nothing), ") ||
+        !strstr(outcome.errors, " (process_run), "))
+        fail_msg("%s", outcome.errors);
+    arena_destroy(arena);
+}
+
 static enum status writes_much(void *context, int out)
 {
     (void)context;
@@ -418,6 +450,7 @@ int main(void)
         cmocka_unit_test(test_warmup__one_outlier_does_not_change_the_answer),
         cmocka_unit_test(test_warmup__is_bounded_in_time),
         cmocka_unit_test(test_process__hears_lines_and_keeps_the_last_words),
+        cmocka_unit_test(test_process__a_crash_tells_where),
         cmocka_unit_test(test_process__takes_more_than_a_pipe_holds),
         cmocka_unit_test_in_folder(test_cell__a_good_one_fills_what_it_measured),
         cmocka_unit_test_in_folder(test_cell__a_method_s_own_counts_are_those_of_a_picture),

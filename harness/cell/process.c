@@ -2,6 +2,7 @@
 #include "cell/process.h"
 
 #include "base/clock.h"
+#include "base/crash.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -85,6 +86,7 @@ _Noreturn static void child_work(const struct process_request *request, pid_t pa
     dup2(nothing, STDIN_FILENO);
     dup2(errors, STDOUT_FILENO);
     dup2(errors, STDERR_FILENO);
+    crash_tell();
     alarm_set(request->timeout_seconds);
     enum status status = request->work(request->context, out);
     fflush(NULL);
@@ -191,16 +193,26 @@ static void watch(struct arena *arena, const struct process_request *request, st
     outcome->seconds = clock_wall_seconds() - start;
 }
 
-/* The last line that holds anything, control characters and what is no ASCII made blanks. */
-static void last_line(const struct child *child, char *line, size_t size)
+/* The last line that holds anything before `end` of the tail: where it starts. */
+static size_t line_before(const struct child *child, size_t *end)
 {
-    size_t end = child->tail_size;
-    while (end && (unsigned char)child->tail[end - 1] <= ' ')
-        end--;
-    size_t start = end;
+    while (*end && (unsigned char)child->tail[*end - 1] <= ' ')
+        --*end;
+    size_t start = *end;
     while (start && child->tail[start - 1] != '\n')
         start--;
-    snprintf(line, size, "%.*s", (int)(end - start), child->tail + start);
+    return start;
+}
+
+/* The last line, and of a crash what was said before it too; control characters and what is no
+ * ASCII made blanks. */
+static void last_words(const struct child *child, char *line, size_t size)
+{
+    size_t end = child->tail_size, start = line_before(child, &end), said_end = start;
+    bool crash = !strncmp(child->tail + start, CRASH_WORD, strlen(CRASH_WORD));
+    size_t said = crash ? line_before(child, &said_end) : said_end;
+    snprintf(line, size, "%.*s%s%.*s", (int)(said_end - said), child->tail + said,
+             said_end > said ? "; " : "", (int)(end - start), child->tail + start);
     for (char *c = line; *c; c++)
         if ((unsigned char)*c < ' ' || (unsigned char)*c > '~')
             *c = ' ';
@@ -209,7 +221,7 @@ static void last_line(const struct child *child, char *line, size_t size)
 static void outcome_fill(const struct child *child, long kills_before,
                          struct process_outcome *outcome)
 {
-    last_line(child, outcome->errors, sizeof outcome->errors);
+    last_words(child, outcome->errors, sizeof outcome->errors);
     if (!WIFSIGNALED(child->wait_status)) {
         outcome->exit_code = WEXITSTATUS(child->wait_status);
         return;

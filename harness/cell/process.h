@@ -27,7 +27,8 @@ struct process_outcome {
     int signal;         /* that ended it, else 0 */
     double seconds;
     char *output;      /* all the child wrote to out, NUL behind its end */
-    char errors[1024]; /* last line of text the child wrote to stdout or stderr */
+    char errors[1024]; /* last line of text the child wrote to stdout or stderr; of a crash also
+                          where it was (base/crash.h) */
 };
 
 /* Forks, works, waits. Signals that come meanwhile are consumed here. The child is the leader of a
