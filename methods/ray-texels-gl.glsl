@@ -74,9 +74,9 @@ vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both, float 
 {
     float depth = uintBitsToFloat(words.x) * sqrt(max(value(eye, words.y), 0.0));
     float seen = max(value(eye, words.z), 1e-4), lit = max(value(sun, words.z), 1e-4);
-    float toward = value(both, words.z) * inversesqrt(seen);
+    float cosine = value(both, words.z) * inversesqrt(seen * lit), root = sqrt(lit), toward = cosine * root;
     float one_sided = max(float(words.w >> 28) * (1.0 / 15.0), sides);
-    float even = 0.63661977 * sqrt(lit) * arc(min(toward * toward / lit, 1.0));
+    float even = 0.63661977 * root * arc(min(cosine * cosine, 1.0));
     float diffuse = (even + 0.5 * one_sided * (toward - even)) / (0.75 + float(words.w >> 24 & 15u) * (1.0 / 60.0));
 #ifdef STRETCHED
 #ifdef ISOTROPIC

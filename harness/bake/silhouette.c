@@ -56,11 +56,10 @@ static void hull_add(struct hull *hull, const struct slab *slab, int y)
                                         {low[3] + high[1], high[1]},  {low[0], low[0] - low[3]},
                                         {low[0], low[2] - low[0]},    {low[2] - low[1], low[1]},
                                         {high[3] + low[1], low[1]},   {high[0], high[0] - high[3]}};
-    for (int i = 0; i < HULL_SIDES; i++) {
-        float *point = hull->points[hull->count++];
-        point[0] = (float)corners[i][0];
-        point[1] = (float)y;
-        point[2] = (float)corners[i][1];
+    for (int i = 0; i < HULL_SIDES; i++, hull->count++) {
+        hull->points[0][hull->count] = (float)corners[i][0];
+        hull->points[1][hull->count] = (float)y;
+        hull->points[2][hull->count] = (float)corners[i][1];
     }
 }
 
@@ -90,55 +89,74 @@ void hull_of_level(const struct voxels_level *level, struct hull *hull)
         hull_add(hull, &below, below.top);
 }
 
-static float along(const float axis[4], const float point[3])
+/* A hull on the screen, px. */
+struct seen {
+    int count;
+    float x[HULL_POINTS], y[HULL_POINTS];
+};
+
+static void see(const struct hull *hull, const struct hull_frame *frame, struct seen *seen)
 {
-    return axis[0] * point[0] + axis[1] * point[1] + axis[2] * point[2] + axis[3];
+    const float *x = hull->points[0], *y = hull->points[1], *z = hull->points[2];
+    const float *across = frame->across, *down = frame->down, *depth = frame->depth;
+    seen->count = hull->count;
+    for (int i = 0; i < hull->count; i++) {
+        float scale = 1 / (depth[0] * x[i] + depth[1] * y[i] + depth[2] * z[i] + depth[3]);
+        seen->x[i] = scale * (across[0] * x[i] + across[1] * y[i] + across[2] * z[i] + across[3]);
+        seen->y[i] = scale * (down[0] * x[i] + down[1] * y[i] + down[2] * z[i] + down[3]);
+    }
 }
 
 /* The way across per row between the middles of the first ring and the last. */
-static float lean_of(float (*px)[2], int count)
+static float lean_of(const struct seen *seen)
 {
-    float first[2] = {0, 0}, last[2] = {0, 0};
-    for (int i = 0; i < HULL_SIDES; i++)
-        for (int axis = 0; axis < 2; axis++) {
-            first[axis] += px[i][axis];
-            last[axis] += px[count - 1 - i][axis];
-        }
-    float across = last[0] - first[0], down = last[1] - first[1];
+    const int last = seen->count - HULL_SIDES;
+    float across = 0, down = 0;
+    for (int i = 0; i < HULL_SIDES; i++) {
+        across += seen->x[last + i] - seen->x[i];
+        down += seen->y[last + i] - seen->y[i];
+    }
     return fabsf(across) < 2 * fabsf(down) ? across / down : 0;
 }
 
-/* Bounds of x - slope (y - from) among points. */
-static void bound(float (*px)[2], int count, float slope, float from, float bounds[2])
+/* Bounds of a x + b (y - from); side by side, for a compiler that has lanes. */
+static void bound(const struct seen *seen, float a, float b, float from, float bounds[2])
 {
-    bounds[0] = INFINITY;
-    bounds[1] = -INFINITY;
-    for (int i = 0; i < count; i++) {
-        float at = px[i][0] - slope * (px[i][1] - from);
-        bounds[0] = fminf(bounds[0], at);
-        bounds[1] = fmaxf(bounds[1], at);
+    float low[HULL_SIDES], high[HULL_SIDES];
+    for (int k = 0; k < HULL_SIDES; k++)
+        low[k] = high[k] = a * seen->x[k] + b * (seen->y[k] - from);
+    for (int i = HULL_SIDES; i < seen->count; i += HULL_SIDES)
+        for (int k = 0; k < HULL_SIDES; k++) {
+            float at = a * seen->x[i + k] + b * (seen->y[i + k] - from);
+            low[k] = at < low[k] ? at : low[k];
+            high[k] = at > high[k] ? at : high[k];
+        }
+    bounds[0] = low[0];
+    bounds[1] = high[0];
+    for (int k = 1; k < HULL_SIDES; k++) {
+        bounds[0] = low[k] < bounds[0] ? low[k] : bounds[0];
+        bounds[1] = high[k] > bounds[1] ? high[k] : bounds[1];
     }
 }
 
 void silhouette_of(const struct hull *hull, const struct hull_frame *frame,
                    struct silhouette *silhouette)
 {
-    float px[HULL_RINGS * HULL_SIDES][2];
-    struct silhouette s = {.low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
-    for (int i = 0; i < hull->count; i++) {
-        float scale = 1 / along(frame->depth, hull->points[i]);
-        px[i][0] = scale * along(frame->across, hull->points[i]);
-        px[i][1] = scale * along(frame->down, hull->points[i]);
-        for (int axis = 0; axis < 2; axis++) {
-            s.low[axis] = fminf(s.low[axis], px[i][axis]);
-            s.high[axis] = fmaxf(s.high[axis], px[i][axis]);
-        }
+    struct seen seen;
+    struct silhouette s;
+    float ends[2][2];
+    see(hull, frame, &seen);
+    bound(&seen, 1, 0, 0, ends[0]);
+    bound(&seen, 0, 1, 0, ends[1]);
+    for (int i = 0; i < 2; i++) {
+        s.low[i] = ends[i][0];
+        s.high[i] = ends[i][1];
     }
-    s.lean = lean_of(px, hull->count);
-    bound(px, hull->count, s.lean, s.low[1], s.bounds[0]);
+    s.lean = lean_of(&seen);
+    bound(&seen, 1, -s.lean, s.low[1], s.bounds[0]);
     float rows = s.high[1] - s.low[1];
     s.spread = rows > 0 ? fminf((s.bounds[0][1] - s.bounds[0][0]) / rows, 4) : 0;
-    bound(px, hull->count, s.lean - s.spread, s.low[1], s.bounds[1]);
-    bound(px, hull->count, s.lean + s.spread, s.low[1], s.bounds[2]);
+    bound(&seen, 1, s.spread - s.lean, s.low[1], s.bounds[1]);
+    bound(&seen, 1, -s.lean - s.spread, s.low[1], s.bounds[2]);
     *silhouette = s;
 }

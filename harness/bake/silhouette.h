@@ -5,13 +5,13 @@
 
 #include "bake/voxels.h"
 
-enum { HULL_RINGS = 6, HULL_SIDES = 8 };
+enum { HULL_RINGS = 6, HULL_SIDES = 8, HULL_POINTS = HULL_RINGS * HULL_SIDES };
 
 /* Octagons across the plant at rising heights; all voxels that are not empty lie within the convex
  * hull of them. Points: voxels from the box's corner. */
 struct hull {
-    int count;
-    float points[HULL_RINGS * HULL_SIDES][3];
+    int count;                    /* of points: HULL_SIDES a ring */
+    float points[3][HULL_POINTS]; /* x, y, z */
 };
 /* An empty level has no points. */
 void hull_of_level(const struct voxels_level *level, struct hull *hull);

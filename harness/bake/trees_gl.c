@@ -130,10 +130,11 @@ static void bound_rect(const struct tiles_rect *rect, struct tree_texels *texels
     texels->rows[0] = (uint16_t)rect->low[1];
     texels->rows[1] = (uint16_t)rect->high[1];
     texels->lean = texels->spread = 0;
-    for (int i = 0; i < 3; i++) {
-        texels->bounds[i][0] = quarters(rect->low[0], floorf);
-        texels->bounds[i][1] = quarters(rect->high[0], ceilf);
-    }
+    for (int i = 0; i < 3; i++)
+        for (int end = 0; end < 2; end++) {
+            int at = 4 * (end ? rect->high[0] : rect->low[0]) + TREE_TEXELS_BIAS;
+            texels->bounds[i][end] = (uint16_t)(at < 65535 ? at : 65535);
+        }
 }
 
 /* The bounds of a silhouette, which are of its own first row, from the first one in the picture
@@ -152,8 +153,11 @@ static void bound_silhouette(const struct silhouette *silhouette, const struct t
     }
 }
 
-/* The pixels that a level's voxels may be seen in; of a tree around the near plane all that its box
- * is in. */
+/* Narrower boxes' outlines cost more to make than the steps that they spare. */
+static const float outlined_px = 8;
+
+/* The pixels that a level's voxels may be seen in; of a tree around the near plane or of a few
+ * pixels all that its box is in. */
 static void place(const struct picture *picture, const struct march_outline *outline,
                   const struct march_box *box, const uint32_t size[3], const struct hull *hull,
                   struct tiles_rect *rect, struct tree_texels *texels)
@@ -161,7 +165,8 @@ static void place(const struct picture *picture, const struct march_outline *out
     const int size_px[2] = {picture->view->width_px, picture->view->height_px};
     struct silhouette silhouette;
     const float *low = outline->low, *high = outline->high;
-    if (outline->before && hull->count) {
+    bool wide = outline->high[0] - outline->low[0] >= outlined_px;
+    if (outline->before && wide && hull->count) {
         const struct hull_frame frame = frame_of(picture, box, size);
         silhouette_of(hull, &frame, &silhouette);
         low = silhouette.low;
