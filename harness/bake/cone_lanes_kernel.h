@@ -94,16 +94,21 @@ static inline lanes cone_lanes_lune(lanes sine, lanes cosine)
 
 /* needles_specular. */
 static inline lanes cone_lanes_specular(const struct cone_lanes_sight *sight, const lanes axis[3],
-                                        lanes lit, lanes seen)
+                                        const lanes by_light[3], const lanes by_eye[3], lanes lit,
+                                        lanes seen)
 {
-    const lanes *h = sight->half, *l = sight->light, *e = sight->eye, dot = sight->half_dot;
+    const lanes *h = sight->half, dot = sight->half_dot;
+    const lanes by_half[3] = {axis[1] * h[2] - axis[2] * h[1], axis[2] * h[0] - axis[0] * h[2],
+                              axis[0] * h[1] - axis[1] * h[0]};
     const lanes zero = lanes_even(0), tiny = lanes_even(1e-20f);
-    const lanes along = axis[0] * h[0] + axis[1] * h[1] + axis[2] * h[2];
+    const lanes square =
+        by_half[0] * by_half[0] + by_half[1] * by_half[1] + by_half[2] * by_half[2];
     const lanes cross =
         axis[0] * sight->cross[0] + axis[1] * sight->cross[1] + axis[2] * sight->cross[2];
     const lanes sine = lanes_abs(cross) / lanes_max(2 * dot, tiny);
-    const lanes cosines[2] = {dot - (axis[0] * e[0] + axis[2] * e[1]) * along,
-                              dot - (axis[0] * l[0] + axis[1] * l[1] + axis[2] * l[2]) * along};
+    const lanes cosines[2] = {
+        by_eye[0] * by_half[0] + by_eye[1] * by_half[1] + by_eye[2] * by_half[2],
+        by_light[0] * by_half[0] + by_light[1] * by_half[1] + by_light[2] * by_half[2]};
     lanes cosine[2], power[2], sine_eye = zero;
     for (int i = 0; i < 2; i++) {
         const lanes length = lanes_sqrt(sine * sine + cosines[i] * cosines[i]);
@@ -117,8 +122,9 @@ static inline lanes cone_lanes_specular(const struct cone_lanes_sight *sight, co
         sine_eye * (power[0] - power[1]) / (sight->exponent + 1);
     const lanes_mask there = lanes_both(lanes_both(lanes_less(zero, dot), lanes_less(zero, seen)),
                                         lanes_less(zero, lit));
-    const lanes all = lanes_clamp(0.5f * lobe * cone_lanes_power(along, sight->exponent));
-    return lanes_pick(lanes_both(there, lanes_less(along * along, lanes_even(1))), all, zero);
+    const lanes all =
+        lanes_clamp(0.5f * lobe * lanes_exp(0.5f * sight->exponent * lanes_log(square)));
+    return lanes_pick(lanes_both(there, lanes_less(lanes_even(1e-24f), square)), all, zero);
 }
 
 /* needles_reflect; shines: the specular part too. */
@@ -140,7 +146,7 @@ static inline struct cone_lanes_shine cone_lanes_reflect(const struct cone_lanes
         .specular = lanes_even(0)};
     shine.diffuse = 0.25f * lit * cone_lanes_lune(lanes_abs(cross), cosine);
     if (shines)
-        shine.specular = cone_lanes_specular(sight, axis, lit, shine.seen);
+        shine.specular = cone_lanes_specular(sight, axis, by_light, by_eye, lit, shine.seen);
     return shine;
 }
 

@@ -96,21 +96,22 @@ static inline real needles_sine_power(real cosine, real power)
 }
 
 /* (3) on the lit side, N.L > 0 and N.V > 0: s_h^n J / 2. J is exact but for the incomplete beta
- * functions, which are error functions here (error of R_s at most 0.026 at n = 1, 0.0055 at 20). */
-static inline real needles_specular(const real axis[3], const struct needles_sight *sight, real lit,
-                                    real seen)
+ * functions, which are error functions here (error of R_s at most 0.026 at n = 1, 0.0055 at 20).
+ * across_light, across_eye: the axis x light, x eye. */
+static inline real needles_specular(const real axis[3], const struct needles_sight *sight,
+                                    const real across_light[3], const real across_eye[3])
 {
     const real n = sight->exponent, along = needles_dot(axis, sight->half);
     real across[3];
     needles_cross(axis, sight->half, across);
     const real sh2 = needles_dot(across, across), dot = sight->half_dot;
-    if (!(sh2 > REAL(1e-24)) || !(seen > 0) || !(lit > 0))
+    if (!(sh2 > REAL(1e-24)) || !(needles_dot(across_eye, across_eye) > 0) ||
+        !(needles_dot(across_light, across_light) > 0))
         return 0;
     /* Angles of the projections of eye and light to that of H, by what both sines have in common.
      */
     const real sine = real_abs(needles_dot(axis, sight->cross)) / (2 * dot);
-    const real cosines[2] = {dot - needles_dot(axis, sight->eye) * along,
-                             dot - needles_dot(axis, sight->light) * along};
+    const real cosines[2] = {needles_dot(across_eye, across), needles_dot(across_light, across)};
     real cosine[2], power[2], sine_eye = 1;
     for (int i = 0; i < 2; i++) {
         const real length = real_sqrt(sine * sine + cosines[i] * cosines[i]);
@@ -122,7 +123,9 @@ static inline real needles_specular(const real axis[3], const struct needles_sig
     const real lobe =
         cosine[0] * sight->lobe * (real_erf(k * cosine[0]) + real_erf(k * cosine[1])) +
         sine_eye * (power[0] - power[1]) / (n + 1);
-    return real_min(real_max(lobe, 0) / 2 * needles_sine_power(along, n), 1);
+    const real glare =
+        along * along < REAL(0.5) ? needles_sine_power(along, n) : real_exp(n / 2 * real_log(sh2));
+    return real_min(real_max(lobe, 0) / 2 * glare, 1);
 }
 
 /* axis: unit. */
@@ -135,8 +138,7 @@ static inline struct needles_shine needles_reflect(const real axis[3],
     struct needles_shine shine = {.seen = real_sqrt(needles_dot(across_eye, across_eye))};
     shine.diffuse = needles_diffuse(axis, sight, across_light, across_eye);
     if (sight->exponent >= 0)
-        shine.specular = needles_specular(
-            axis, sight, real_sqrt(needles_dot(across_light, across_light)), shine.seen);
+        shine.specular = needles_specular(axis, sight, across_light, across_eye);
     return shine;
 }
 
