@@ -167,7 +167,7 @@ static void test_conifers__relief_before_half_a_pixel_leaves_half_to_what_is_beh
     (void)state;
     struct arena *arena = arena_create(0);
     struct workspace workspace = {.arena = arena, .threads = 1};
-    float left = 1, share = 1, front_m = 5, rgb[3] = {0, 0, 0}, suns = 0, behind[1][3] = {{0}};
+    float left = 1, share = 1, limit_m = 5, rgb[3] = {0, 0, 0}, suns = 0, behind[1][3] = {{0}};
     int32_t edge = 0;
     struct cone_layer layers[CONE_LAYERS] = {
         {.depth_m = 5, .share = 0.5f, .rgb = {0.5f, 0, 0}},
@@ -176,7 +176,7 @@ static void test_conifers__relief_before_half_a_pixel_leaves_half_to_what_is_beh
                                  .height_px = 1,
                                  .left = &left,
                                  .share = &share,
-                                 .front_m = &front_m,
+                                 .limit_m = &limit_m,
                                  .rgb = {&rgb[0], &rgb[1], &rgb[2]},
                                  .suns = &suns,
                                  .behind = behind,

@@ -46,6 +46,7 @@ static void room_for(struct cone_canvas *canvas, const struct view *view)
     canvas->left = ARENA_ARRAY(canvas->arena, float, pixels);
     canvas->share = ARENA_ARRAY(canvas->arena, float, pixels);
     canvas->front_m = ARENA_ARRAY(canvas->arena, float, pixels);
+    canvas->limit_m = ARENA_ARRAY(canvas->arena, float, pixels);
     for (int c = 0; c < 3; c++)
         canvas->rgb[c] = ARENA_ARRAY(canvas->arena, float, pixels);
     canvas->suns = ARENA_ARRAY(canvas->arena, float, pixels);
@@ -96,12 +97,41 @@ static void tile_begin(struct cone_canvas *canvas, size_t tile)
             canvas->edges[pixel] = -1;
         }
     backdrop_cpu_tile(canvas->backdrop, &part);
-    canvas->far_m[tile] = 0;
-    for (int row = 0; row < part.height_px; row++)
-        for (int column = 0; column < part.width_px; column++)
-            canvas->far_m[tile] =
-                fmaxf(canvas->far_m[tile],
-                      part.depths_m[(size_t)row * (size_t)canvas->width_px + (size_t)column]);
+}
+
+/* The farthest that a pixel's relief is within a pixel of it; at an edge, as it is. */
+static float limit_of(const struct cone_canvas *canvas, int x, int y)
+{
+    const int right = x + 1 < canvas->width_px ? x + 1 : x, left = x > 0 ? x - 1 : x;
+    const int bottom = y + 1 < canvas->height_px ? y + 1 : y, top = y > 0 ? y - 1 : y;
+    const float *rows[3];
+    for (int k = 0; k < 3; k++)
+        rows[k] = canvas->front_m + (size_t)(k == 0   ? top
+                                             : k == 1 ? y
+                                                      : bottom) *
+                                        (size_t)canvas->width_px;
+    if (canvas->fine && is_edge(canvas, x, y))
+        return rows[1][x];
+    float far_m = 0;
+    for (int k = 0; k < 3; k++)
+        far_m = fmaxf(far_m, fmaxf(fmaxf(rows[k][left], rows[k][x]), rows[k][right]));
+    return far_m;
+}
+
+static void tile_limit(struct cone_canvas *canvas, size_t tile)
+{
+    const int x = (int)(tile % (size_t)canvas->across) * CONE_TILE;
+    const int y = (int)(tile / (size_t)canvas->across) * CONE_TILE;
+    const int right = x + CONE_TILE < canvas->width_px ? x + CONE_TILE : canvas->width_px;
+    const int bottom = y + CONE_TILE < canvas->height_px ? y + CONE_TILE : canvas->height_px;
+    float far_m = 0;
+    for (int row = y; row < bottom; row++)
+        for (int column = x; column < right; column++) {
+            const float limit_m = limit_of(canvas, column, row);
+            canvas->limit_m[(size_t)row * (size_t)canvas->width_px + (size_t)column] = limit_m;
+            far_m = fmaxf(far_m, limit_m);
+        }
+    canvas->far_m[tile] = far_m;
 }
 
 /* Samples of a fine block that belong to one pixel. */
@@ -165,7 +195,7 @@ static void block_cut(struct cone_canvas *canvas, int x, int y)
             }
             struct cone_layer *layers = canvas->layers + CONE_LAYERS * canvas->edges[pixel];
             layers_of(&samples, layers);
-            canvas->front_m[pixel] = layers[0].depth_m;
+            canvas->limit_m[pixel] = layers[0].depth_m;
         }
 }
 
@@ -212,6 +242,9 @@ void cone_canvas_begin(struct workspace *workspace, struct cone_canvas *canvas,
 #pragma omp parallel for num_threads(workspace->threads) schedule(dynamic, 1)
     for (size_t tile = 0; tile < tiles; tile++)
         tile_begin(canvas, tile);
+#pragma omp parallel for num_threads(workspace->threads) schedule(dynamic, 1)
+    for (size_t tile = 0; tile < tiles; tile++)
+        tile_limit(canvas, tile);
     if (canvas->fine)
         edges_cut(workspace, canvas, view);
 }
@@ -246,7 +279,7 @@ static void layers_pass(struct cone_canvas *canvas, size_t pixel, float depth_m)
         return;
     }
     struct cone_layer *layers = canvas->layers + CONE_LAYERS * canvas->edges[pixel];
-    float share = 0, front_m = INFINITY;
+    float share = 0, limit_m = INFINITY;
     for (int k = 0; k < CONE_LAYERS; k++) {
         if (!(layers[k].share > 0) || layers[k].left > 0)
             continue;
@@ -254,18 +287,18 @@ static void layers_pass(struct cone_canvas *canvas, size_t pixel, float depth_m)
             layers[k].left = fmaxf(canvas->left[pixel], 1e-9f);
         } else {
             share += layers[k].share;
-            front_m = fminf(front_m, layers[k].depth_m);
+            limit_m = fminf(limit_m, layers[k].depth_m);
         }
     }
     canvas->share[pixel] = share;
-    canvas->front_m[pixel] = front_m;
+    canvas->limit_m[pixel] = limit_m;
 }
 
 void cone_canvas_put(struct cone_canvas *canvas, size_t pixel, const struct cone_strip *strip,
                      const struct cone_place *place, float w)
 {
     float depth_m = strip->depths_m[0] + place->share * (strip->depths_m[1] - strip->depths_m[0]);
-    if (depth_m > canvas->front_m[pixel])
+    if (depth_m > canvas->limit_m[pixel])
         layers_pass(canvas, pixel, depth_m);
     float part = w * canvas->left[pixel] * canvas->share[pixel];
     if (!(part > 0))

@@ -11,7 +11,8 @@
 
 enum { CONE_TILE = 32, CONE_LAYERS = 4 };
 
-/* Relief or sky behind a part of a pixel. */
+/* Relief or sky behind a part of a pixel. Relief without an edge there slants through it: a tree
+ * smaller than a pixel may stand on any of its ground, before which it is. */
 struct cone_layer {
     float depth_m, share;
     float left; /* of it is seen, once something behind it has been met */
@@ -26,6 +27,7 @@ struct cone_canvas {
     int width_px, height_px, across, down; /* tiles */
     size_t pixels_capacity, tiles_capacity, edges_capacity;
     float *left, *share, *front_m, *rgb[3]; /* a pixel */
+    float *limit_m; /* a pixel: what is nearer is before all that is seen of the relief */
     float *suns, (*behind)[3];
     int32_t *edges; /* of a pixel: -1, or which of the layers' fours */
     struct cone_layer *layers;
