@@ -46,6 +46,28 @@ static uint32_t trunk_step_of(float piece_px)
     return step;
 }
 
+void cone_tree_thin(const struct cone_choice *choice, float px, struct cone_tree *tree)
+{
+    const struct cone_plant *plant = tree->plant;
+    const float area_px2 = px * px * plant->area_m2;
+    tree->twigs =
+        kept_of(plant->twigs_count, plant->twigs_areas, choice->thin, area_px2, &tree->twigs_grown);
+    tree->barks = kept_of(plant->barks_count - plant->trunks_count, plant->barks_areas,
+                          choice->thin, area_px2, &tree->barks_grown);
+    tree->barks += (float)plant->trunks_count;
+    tree->trunk_step = choice->thin > 0 ? trunk_step_of(px * plant->piece_m) : 1;
+}
+
+/* The share of a plant's opacity as it is seen from here. */
+static float fill_of(const struct cone_tree *tree, float px)
+{
+    float eye[3];
+    for (int i = 0; i < 3; i++)
+        eye[i] = tree->eye_m[i] - tree->plant->center_m[i];
+    return cone_outline_fill(&tree->plant->outline, 2 * px * tree->plant->radius_m,
+                             eye[1] / sqrtf(fmaxf(dot3(eye, eye), 1e-30f)));
+}
+
 void cone_tree_of(const struct cone_picture *picture, size_t index, struct cone_tree *tree)
 {
     const struct instance *instance = &picture->scene->instances[index];
@@ -70,14 +92,8 @@ void cone_tree_of(const struct cone_picture *picture, size_t index, struct cone_
     float middle_m[3], px = picture->focal_px * instance->scale;
     cone_to_camera(tree, tree->plant->center_m, middle_m);
     px /= fmaxf(middle_m[2] - instance->scale * tree->plant->radius_m, view->near_m);
-    float area_px2 = px * px * tree->plant->area_m2;
-    tree->twigs = kept_of(tree->plant->twigs_count, tree->plant->twigs_areas, picture->choice.thin,
-                          area_px2, &tree->twigs_grown);
-    tree->barks =
-        kept_of(tree->plant->barks_count - tree->plant->trunks_count, tree->plant->barks_areas,
-                picture->choice.thin, area_px2, &tree->barks_grown);
-    tree->trunk_step = picture->choice.thin > 0 ? trunk_step_of(px * tree->plant->piece_m) : 1;
-    tree->barks += (float)tree->plant->trunks_count;
+    cone_tree_thin(&picture->choice, px, tree);
+    tree->fill = fill_of(tree, px);
     tree->light.cones = NULL;
     if (picture->lights)
         cone_lights_of_tree(picture->lights, index, &tree->light);
@@ -260,6 +276,8 @@ size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree
     strip->opacity =
         cone_outline_part(&plant->outline, middle_m, fmaxf(rod.radius_m[0], rod.radius_m[1]), eye,
                           tree->scale * picture->focal_px / strip->depth_m);
+    if (index >= plant->trunks_count)
+        strip->opacity = fminf(tree->fill * strip->opacity, 1);
     if (tree->light.cones) {
         float gain = cone_tree_light_gain(&tree->light, middle_m);
         strip->lit[0] = strip->lit[1] = gain * (float)tree->light.barks[index] / 255;

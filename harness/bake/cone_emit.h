@@ -45,11 +45,14 @@ struct cone_tree {
     float twigs, barks;             /* how many of the first ones are drawn, the last one partly */
     float twigs_grown, barks_grown; /* how much more area each then has */
     uint32_t trunk_step;            /* so many pieces of a trunk are drawn as one */
+    float fill;                     /* of opacities, but the trunk's (cone_outline_fill) */
     struct cone_tree_light light;
 };
 /* Whether anything within a sphere around a place of the camera's may be seen. */
 bool cone_picture_sees(const struct cone_picture *picture, const float middle_m[3], float radius_m);
 void cone_tree_of(const struct cone_picture *picture, size_t instance, struct cone_tree *tree);
+/* How much of its plant is drawn where a metre of it is so many pixels. */
+void cone_tree_thin(const struct cone_choice *choice, float px, struct cone_tree *tree);
 
 /* Shares of the levels, which sum to 1. */
 struct cone_mix {
@@ -76,8 +79,9 @@ void cone_twigs_emit(const struct cone_picture *picture, const struct cone_tree 
 size_t cone_bark_emit(const struct cone_picture *picture, const struct cone_tree *tree, size_t bark,
                       struct cone_strip *strips);
 
-/* Measures the outline of a plant whose twigs are drawn at a level, or at -1: whatever suits. */
-void cone_outline_measure(struct arena *arena, const struct scene *scene, enum cone_shaders shaders,
-                          int level, struct cone_plant *plant);
+/* Measures the outline of a plant that is drawn so: pictures of its twigs from around it; and of
+ * all its needles, if they are not too many, for what it is to cover. */
+void cone_outline_measure(const struct scene *scene, enum cone_shaders shaders,
+                          const struct cone_choice *choice, int threads, struct cone_plant *plant);
 
 #endif

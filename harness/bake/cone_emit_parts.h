@@ -38,7 +38,7 @@ struct cone_twig_view {
     struct cone_halves halves;
     struct needles_disc disc;
     struct needles_lit lit;
-    float part;       /* of its opacity (cone_outline_part) */
+    float part;       /* of its opacity (cone_outline_part, the tree's fill) */
     float grown;      /* how much more area it is drawn with */
     float gain;       /* of the sun, of what falls on the tree */
     float needles_m2; /* a cone's, as seen, nothing hidden */

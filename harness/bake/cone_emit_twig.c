@@ -166,9 +166,10 @@ static bool view_of(const struct cone_picture *picture, const struct cone_tree *
                                : -1;
     seen->gain = tree->light.cones ? cone_tree_light_gain(&tree->light, middle_m) : 1;
     seen->mix = mix_at(picture, tree, twig, camera_m[2], tree->scale * away);
-    seen->part = cone_outline_part(&tree->plant->outline, middle_m, twig->radius_m, seen->eye,
-                                   tree->scale * picture->focal_px /
-                                       fmaxf(camera_m[2], picture->view->near_m));
+    seen->part =
+        tree->fill * cone_outline_part(&tree->plant->outline, middle_m, twig->radius_m, seen->eye,
+                                       tree->scale * picture->focal_px /
+                                           fmaxf(camera_m[2], picture->view->near_m));
     return true;
 }
 
@@ -328,8 +329,8 @@ static size_t strips_of(const struct cone_picture *picture, const struct cone_tr
         if (seen->mix.shares[CONE_NEEDLE] > 0)
             count += cone_needles_emit(picture, tree, seen, beam, strips + count);
     }
-    for (size_t k = 0; k < count && seen->part < 1; k++)
-        strips[k].opacity *= seen->part;
+    for (size_t k = 0; k < count && seen->part != 1; k++)
+        strips[k].opacity = fminf(seen->part * strips[k].opacity, 1);
     return count;
 }
 

@@ -17,12 +17,48 @@ static float tent_share(float half_px, float away_px)
     return tent_until(half_px - away_px) + tent_until(half_px + away_px);
 }
 
-static float depth_from(const struct cone_outline *outline, float rise)
+/* Between two of count: the lower one; returns the share of the other. */
+static float between(float at, int count, int *low)
 {
-    float at = fminf(rise, 1) * (CONE_RISES - 1);
-    int low = at < CONE_RISES - 2 ? (int)at : CONE_RISES - 2;
-    return outline->depths[low] +
-           (at - (float)low) * (outline->depths[low + 1] - outline->depths[low]);
+    at = fminf(fmaxf(at, 0), (float)(count - 1));
+    *low = at < (float)(count - 2) ? (int)at : count - 2;
+    return at - (float)*low;
+}
+
+float cone_outline_rise(int rise)
+{
+    const float below = 1 - (float)rise / (CONE_RISES - 1);
+    return 1 - below * below;
+}
+
+/* The other way around, of a sine. */
+static float rise_at(float sine)
+{
+    return (CONE_RISES - 1) * (1 - sqrtf(1 - fminf(fabsf(sine), 1)));
+}
+
+static float depth_from(const struct cone_outline *outline, float sine)
+{
+    int low;
+    float share = between(rise_at(sine), CONE_RISES, &low);
+    return outline->depths[low] + share * (outline->depths[low + 1] - outline->depths[low]);
+}
+
+float cone_outline_fill(const struct cone_outline *outline, float diameter_px, float rise)
+{
+    static const float octaves = 2;
+    const float size = log2f(fmaxf(4 * diameter_px, 1)), over = size - (CONE_SIZES - 1);
+    int low[2];
+    if (!(outline->fills[0][0] > 0) || over >= octaves)
+        return 1;
+    const float share = between(rise_at(rise), CONE_RISES, &low[0]);
+    const float part = between(size, CONE_SIZES, &low[1]);
+    const float *lower = outline->fills[low[0]] + low[1],
+                *upper = outline->fills[low[0] + 1] + low[1];
+    const float first = lower[0] + share * (upper[0] - lower[0]);
+    const float second = lower[1] + share * (upper[1] - lower[1]);
+    const float fill = first + part * (second - first);
+    return over > 0 ? fill + over / octaves * (1 - fill) : fill;
 }
 
 float cone_outline_part(const struct cone_outline *outline, const float place_m[3], float reach_m,
@@ -51,7 +87,7 @@ float cone_outline_part(const struct cone_outline *outline, const float place_m[
     }
     if (share >= 1)
         return 1;
-    const float depth = depth_from(outline, fabsf(eye[1]));
+    const float depth = depth_from(outline, eye[1]);
     const float covers = -expm1f(-depth);
     if (share * depth < 1e-4f)
         return depth > 1e-4f ? covers / depth : 1;

@@ -29,7 +29,7 @@ enum status cones_prepare(struct workspace *workspace, const struct scene *scene
         if (status)
             return status;
         struct cone_plant *plant = cones->plants[i] = cone_plant_create(arena, conifer);
-        cone_outline_measure(arena, scene, options->shaders, options->choice.forced, plant);
+        cone_outline_measure(scene, options->shaders, &options->choice, workspace->threads, plant);
         float x = plant->center_m[0], z = plant->center_m[2];
         bounds[i] = (struct cull_bound){plant->center_m[1], plant->radius_m + sqrtf(x * x + z * z)};
     }
