@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { WHORLS = 16, BOUGHS = 8, TWIGS = 2, CONES = 12, NEEDLES = 10 };
+enum { WHORLS = 12, BOUGHS = 7, TWIGS = 2, CONES = 10, NEEDLES = 10 };
 static const float ROOT_M = -0.3f, TOP_M = 19.5f, TRUNK_M[2] = {0.5f, 0.1f};
 static const float LOWEST_M = 5.5f, HIGHEST_M = 19, BOUGHS_M[2] = {4, 0.9f};
 static const float NEEDLE_M = 0.45f, NEEDLE_RADIUS_M = 0.01f;
