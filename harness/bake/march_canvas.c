@@ -22,6 +22,11 @@ void canvas_begin(struct canvas *canvas, const struct march_view *picture, int x
     if (picture->shadows)
         memset(canvas->suns, 0, (size_t)(side * side) * sizeof *canvas->suns);
     backdrop_cpu_tile(canvas->backdrop, &canvas->tile);
+}
+
+void canvas_open(struct canvas *canvas, const struct march_view *picture)
+{
+    const int side = canvas->tile.stride;
     canvas->lookups = 0;
     canvas->rays = (struct march_rays){side, canvas->left, canvas->gathered, canvas->depths_m, 0};
     canvas->stop = picture->options.stop;
@@ -59,6 +64,20 @@ void canvas_shade(struct canvas *canvas, const struct march_view *picture)
 }
 
 typedef float four __attribute__((vector_size(4 * sizeof(float))));
+
+void canvas_end_clear(const struct canvas *canvas, const struct view *view, float *pixels)
+{
+    const struct backdrop_tile *tile = &canvas->tile;
+    for (int row = 0; row < tile->height_px; row++) {
+        float *to =
+            pixels + 4 * ((size_t)(tile->y_px + row) * (size_t)view->width_px + (size_t)tile->x_px);
+        for (int at = row * tile->stride, end = at + tile->width_px; at < end; at++, to += 4) {
+            const float *behind = canvas->rgb[at];
+            const four pixel = {behind[0], behind[1], behind[2], 0};
+            memcpy(to, &pixel, sizeof pixel);
+        }
+    }
+}
 
 void canvas_end(const struct canvas *canvas, const struct view *view, float *pixels)
 {

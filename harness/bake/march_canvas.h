@@ -22,9 +22,11 @@ struct canvas {
     float stop;       /* a pixel is closed at this transmittance */
 };
 
-/* The tile whose upper left pixel is (x, y), of side_px. */
+/* What is behind the trees, of the tile whose upper left pixel is (x, y), of side_px. */
 void canvas_begin(struct canvas *canvas, const struct march_view *picture, int x, int y,
                   int side_px);
+/* Opens its pixels, before anything is drawn. */
+void canvas_open(struct canvas *canvas, const struct march_view *picture);
 void canvas_splat(struct canvas *canvas, const struct march_splat *splat,
                   const struct backdrop_rays *picture_rays);
 /* A tree of a few pixels: a far picture of it, with what that hides and shines altogether (its)
@@ -45,5 +47,7 @@ void canvas_march(struct canvas *canvas, const struct march_view *picture,
 void canvas_shade(struct canvas *canvas, const struct march_view *picture);
 /* pixels: of the picture, height x width x 4. */
 void canvas_end(const struct canvas *canvas, const struct view *view, float *pixels);
+/* The same of a tile without trees, not opened. */
+void canvas_end_clear(const struct canvas *canvas, const struct view *view, float *pixels);
 
 #endif

@@ -132,6 +132,11 @@ uint64_t march_tile_draw(const struct march *march, const struct march_view *pic
     canvas_begin(canvas, picture, (int)(tile % (size_t)tiles->across) * side,
                  (int)(tile / (size_t)tiles->across) * side, side);
     const uint32_t end = march->tile_first[tile + 1];
+    if (march->tile_first[tile] == end && !picture->shadows) {
+        canvas_end_clear(canvas, picture->view, pixels);
+        return 0;
+    }
+    canvas_open(canvas, picture);
     for (uint32_t at = march->tile_first[tile]; at < end && canvas->open_count; at++) {
         uint32_t k = march->entries[at];
         march_entry_fetch(march, list, at + MARCH_SOON < end ? march->entries[at + MARCH_SOON] : k);
