@@ -28,7 +28,7 @@ static const struct option table[] = {
            "larger ones marched; not with slabs"),
     OPTION(struct options, shadows, 64, 0, 512, "",
            "cells of the sun's shadows along a plant's longest extent; 0: the sun casts none"),
-    OPTION(struct options, tile, 32, 8, 64, "px", "side of the tiles that trees are binned to"),
+    OPTION(struct options, tile, 48, 8, 64, "px", "side of the tiles that trees are binned to"),
     OPTION_WORD(struct options, cells, 0, "auto|off",
                 "trees are culled by cells of many, and drawn so where they are below a pixel; off: "
                 "each by itself"),
