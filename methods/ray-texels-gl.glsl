@@ -102,15 +102,11 @@ int next_tree(ivec2 at, inout int entry, int end)
     int tree = -1;
     do {
         int next = 4 * int(texelFetch(entries, min(entry, end - 1)).r);
-        uvec4 bounds = texelFetch(trees, next);
-        uvec2 others = texelFetch(trees, next + 1).xy;
-        float lean = uintBitsToFloat(bounds.y), spread = uintBitsToFloat(bounds.z);
+        uvec3 bounds = texelFetch(trees, next).xyz;
         int row = at.y - int(bounds.x & 65535u);
-        float upright = float(4 * at.x + BIAS) - lean * float(row), wide = spread * float(row);
-        vec3 across = clamp(vec3(upright, upright + wide, upright - wide), 0.0, 65535.0);
-        vec3 low = vec3(bounds.w & 65535u, others & 65535u), high = vec3(bounds.w >> 16, others >> 16);
-        bool inside = row >= 0 && at.y <= int(bounds.x >> 16) && all(lessThanEqual(low, across)) &&
-                      all(lessThanEqual(across, high));
+        float across = clamp(float(4 * at.x + BIAS) - uintBitsToFloat(bounds.y) * float(row), 0.0, 65535.0);
+        bool inside = row >= 0 && at.y <= int(bounds.x >> 16) && across >= float(bounds.z & 65535u) &&
+                      across <= float(bounds.z >> 16);
         tree = tree < 0 && entry < end && inside ? next : tree;
         entry += tree < 0 ? 1 : 0;
     } while (tree < 0 && entry < end);
@@ -143,10 +139,9 @@ void main()
     int tree = next_tree(at, entry, end);
     do {
         int first = max(tree, 0);
-        uvec4 place = texelFetch(trees, first + 1);
+        uvec4 looks = texelFetch(trees, first + 1);  // first cell, size, shares, albedo
         vec4 where = uintBitsToFloat(texelFetch(trees, first + 2));
-        uvec4 looks = texelFetch(trees, first + 3);
-        vec2 turn = uintBitsToFloat(looks.xy);
+        vec2 turn = uintBitsToFloat(texelFetch(trees, first + 3).xy);
         float clear = float(looks.z & 65535u) / 65535.0;
 #ifdef SMOOTH
         float drawn = float(looks.z >> 16) / 65535.0;  // of the tree's optical depth
@@ -166,13 +161,13 @@ void main()
         u = normalize(u);
 #endif
         form f_eye = form_of(u, u), f_sun = form_of(l, l), f_both = form_of(-u, l);
-        vec3 size = vec3(place.w & 1023u, place.w >> 10 & 1023u, place.w >> 20 & 1023u);
+        vec3 size = vec3(looks.y & 1023u, looks.y >> 10 & 1023u, looks.y >> 20 & 1023u);
         vec3 white = vec3(looks.w & 1023u, looks.w >> 10 & 1023u, looks.w >> 20 & 1023u) / (1023.0 * 255.0);
 
         // The ray from where it enters the box, in voxels.
         float weight = 1.0, along = 0.0, span;
         vec3 start = vec3(0.0);
-        if ((place.w >> 30 & 1u) != 0u) {
+        if ((looks.y >> 30 & 1u) != 0u) {
             // Smaller than a pixel: spread over the four pixels around its middle, also where their centres see the
             // ground before its foot: two pixels farther up that is behind it.
             vec2 off = max(1.0 - abs(vec2(at) - where.xy), 0.0);
@@ -189,7 +184,7 @@ void main()
         }
         if (tree < 0)
             span = 0.0;
-        float thick = (place.w >> 31) != 0u ? SOLID : 1.0;  // the eye is in the tree's bark
+        float thick = (looks.y >> 31) != 0u ? SOLID : 1.0;  // the eye is in the tree's bark
         float leap = 1.0 / max(abs(u.x), max(abs(u.y), abs(u.z)));
         ivec3 grid = ivec3(size);
         uint octant = (u.x < 0.0 ? 4u : 0u) + (u.y < 0.0 ? 8u : 0u) + (u.z < 0.0 ? 16u : 0u);
@@ -207,7 +202,7 @@ void main()
 #ifdef COUNT
                 lookups += pace > 0.0 && cell >= EMPTY ? 1u : 0u;  // else it finds the same again
 #endif
-                cell = texelFetch(cells, int(place.z) + (p.z * grid.y + p.y) * grid.x + p.x).r;
+                cell = texelFetch(cells, int(looks.x) + (p.z * grid.y + p.y) * grid.x + p.x).r;
                 if (cell >= EMPTY) {
                     along = max(along + stride, middle + (float(int(cell >> octant & 15u)) - 1.0) * leap);
                     stride = short_step;

@@ -153,10 +153,6 @@ void silhouette_of(const struct hull *hull, const struct hull_frame *frame,
         s.high[i] = ends[i][1];
     }
     s.lean = lean_of(&seen);
-    bound(&seen, 1, -s.lean, s.low[1], s.bounds[0]);
-    float rows = s.high[1] - s.low[1];
-    s.spread = rows > 0 ? fminf((s.bounds[0][1] - s.bounds[0][0]) / rows, 4) : 0;
-    bound(&seen, 1, s.spread - s.lean, s.low[1], s.bounds[1]);
-    bound(&seen, 1, -s.lean - s.spread, s.low[1], s.bounds[2]);
+    bound(&seen, 1, -s.lean, s.low[1], s.bounds);
     *silhouette = s;
 }

@@ -22,11 +22,10 @@ struct hull_frame {
     float across[4], down[4], depth[4];
 };
 
-/* Lines of pixels that lean on their way down: x - slope (y - low[1]) lies between a pair of
- * bounds, px, for the slopes lean, lean - spread, lean + spread; low and high: the hull's
- * rectangle. */
+/* Lines of pixels that lean on their way down: x - lean (y - low[1]) lies between the bounds, px;
+ * low and high: the hull's rectangle. */
 struct silhouette {
-    float low[2], high[2], lean, spread, bounds[3][2];
+    float low[2], high[2], lean, bounds[2];
 };
 /* Of a hull with points, all of positive depth. */
 void silhouette_of(const struct hull *hull, const struct hull_frame *frame,

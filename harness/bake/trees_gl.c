@@ -129,12 +129,11 @@ static void bound_rect(const struct tiles_rect *rect, struct tree_texels *texels
 {
     texels->rows[0] = (uint16_t)rect->low[1];
     texels->rows[1] = (uint16_t)rect->high[1];
-    texels->lean = texels->spread = 0;
-    for (int i = 0; i < 3; i++)
-        for (int end = 0; end < 2; end++) {
-            int at = 4 * (end ? rect->high[0] : rect->low[0]) + TREE_TEXELS_BIAS;
-            texels->bounds[i][end] = (uint16_t)(at < 65535 ? at : 65535);
-        }
+    texels->lean = 0;
+    for (int end = 0; end < 2; end++) {
+        int at = 4 * (end ? rect->high[0] : rect->low[0]) + TREE_TEXELS_BIAS;
+        texels->bounds[end] = (uint16_t)(at < 65535 ? at : 65535);
+    }
 }
 
 /* The bounds of a silhouette, which are of its own first row, from the first one in the picture
@@ -142,15 +141,11 @@ static void bound_rect(const struct tiles_rect *rect, struct tree_texels *texels
 static void bound_silhouette(const struct silhouette *silhouette, const struct tiles_rect *rect,
                              struct tree_texels *texels)
 {
-    const float spread = silhouette->spread, slopes[3] = {0, -spread, spread};
+    const float way = silhouette->lean * ((float)rect->low[1] - silhouette->low[1]);
     bound_rect(rect, texels);
     texels->lean = 4 * silhouette->lean;
-    texels->spread = 4 * spread;
-    for (int i = 0; i < 3; i++) {
-        float way = (silhouette->lean + slopes[i]) * ((float)rect->low[1] - silhouette->low[1]);
-        texels->bounds[i][0] = quarters(silhouette->bounds[i][0] + way, floorf);
-        texels->bounds[i][1] = quarters(silhouette->bounds[i][1] + way, ceilf);
-    }
+    texels->bounds[0] = quarters(silhouette->bounds[0] + way, floorf);
+    texels->bounds[1] = quarters(silhouette->bounds[1] + way, ceilf);
 }
 
 /* Narrower boxes' outlines cost more to make than the steps that they spare. */

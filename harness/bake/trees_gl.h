@@ -5,21 +5,23 @@
 #include "bake/tiles.h"
 #include "bake/voxels_gl.h"
 
-/* A tree as the shader reads it: four texels. The pixels where it may be: rows, and of each of
- * three slopes (lean, lean - spread, lean + spread) the bounds of x - slope (y - rows[0]), in
- * quarters of a pixel from TREE_TEXELS_BIAS on, which end at 0 and 65535. */
+/* A tree as the shader reads it: four texels. The pixels where it may be come first: rows, and the
+ * bounds of x - lean (y - rows[0]), in quarters of a pixel from TREE_TEXELS_BIAS on, which end at 0
+ * and 65535. */
 struct tree_texels {
-    uint16_t rows[2];   /* both ends included, row 0 on top */
-    float lean, spread; /* quarters of a pixel a row */
-    uint16_t bounds[3][2];
+    uint16_t rows[2]; /* both ends included, row 0 on top */
+    float lean;       /* quarters of a pixel a row */
+    uint16_t bounds[2];
+    uint32_t unused;
     uint32_t first_cell;
     uint32_t size;   /* three times 10 bits; bit 30: smaller than a pixel; 31: opaque */
+    uint32_t shares; /* what fog leaves, and of the optical depth what is drawn: 16 bits each */
+    uint32_t albedo; /* three times 10 bits */
     float where[3];  /* the eye in voxels from the box's corner; of a small tree: its middle on
                         the screen, from pixel centres, px; its area, px^2 */
     float per_m;     /* voxels a metre; of a small tree: its depth along the view, m */
     float turn[2];   /* cosine, sine, both over the stretch */
-    uint32_t shares; /* what fog leaves, and of the optical depth what is drawn: 16 bits each */
-    uint32_t albedo; /* three times 10 bits */
+    float unused_too[2];
 };
 enum { TREE_TEXELS_BIAS = 1 << 14 };
 
