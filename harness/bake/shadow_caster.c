@@ -150,6 +150,19 @@ static void find_volumes(const struct shadow_caster *caster, uint32_t *parents, 
     }
 }
 
+static void find_halves(struct arena *arena, struct arena *passing, struct shadow_caster *caster)
+{
+    uint32_t *parents = ARENA_ARRAY(passing, uint32_t, caster->points_count);
+    for (uint32_t i = 0; i < caster->points_count; i++)
+        parents[i] = i;
+    for (size_t c = 0; c < 3 * caster->triangles_count; c++)
+        parents[root_of(parents, caster->triangles[c / 3][c % 3])] =
+            root_of(parents, caster->triangles[c / 3][(c + 1) % 3]);
+    caster->halves = ARENA_ARRAY(arena, uint8_t, caster->triangles_count);
+    for (size_t t = 0; t < caster->triangles_count; t++)
+        caster->halves[t] = mix(root_of(parents, caster->triangles[t][0]), 0, 0) & 1;
+}
+
 void shadow_caster_build(struct arena *arena, const struct mesh *mesh, bool ground,
                          struct shadow_caster *caster)
 {
@@ -158,6 +171,7 @@ void shadow_caster_build(struct arena *arena, const struct mesh *mesh, bool grou
     weld(arena, passing, mesh, caster);
     find_normals(arena, caster);
     find_edges(arena, passing, caster);
+    find_halves(arena, passing, caster);
     caster->weights = ARENA_ARRAY(arena, int8_t, caster->triangles_count);
     if (!ground) {
         uint32_t *parents = ARENA_ARRAY(passing, uint32_t, caster->points_count);
@@ -177,13 +191,16 @@ size_t shadow_caster_room(const struct shadow_caster *caster)
 }
 
 /* The sun's side of each triangle decides how, and whether, it casts. */
-static void find_weights(const struct shadow_caster *caster, const float toward[3], bool silhouette)
+static void find_weights(const struct shadow_caster *caster,
+                         const struct shadow_extrusion *extrusion)
 {
+    const float *toward = extrusion->toward;
     for (size_t t = 0; t < caster->triangles_count; t++) {
         const float *n = caster->normals[t];
         bool facing = n[0] * toward[0] + n[1] * toward[1] + n[2] * toward[2] > 0;
-        bool solid = caster->kinds[t] == SHADOW_SOLID && silhouette;
-        caster->weights[t] = (int8_t)(facing ? !solid : -1);
+        bool solid = caster->kinds[t] == SHADOW_SOLID && extrusion->silhouette;
+        int weight = facing ? !solid : -1;
+        caster->weights[t] = (int8_t)(caster->halves[t] == extrusion->half ? weight : 0);
     }
 }
 
@@ -237,7 +254,7 @@ static void add_all_walls(const struct shadow_caster *caster, uint32_t base, uin
                           struct shadow_boundary *boundary)
 {
     for (size_t t = 0; t < caster->triangles_count; t++)
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3 && caster->weights[t]; i++) {
             uint32_t a = base + caster->triangles[t][i];
             uint32_t b = base + caster->triangles[t][(i + 1) % 3];
             bool turn = caster->weights[t] < 0;
@@ -245,14 +262,14 @@ static void add_all_walls(const struct shadow_caster *caster, uint32_t base, uin
         }
 }
 
-void shadow_caster_extrude(const struct shadow_caster *caster, const float toward[3],
-                           bool silhouette, uint32_t base, uint32_t ends,
+void shadow_caster_extrude(const struct shadow_caster *caster,
+                           const struct shadow_extrusion *extrusion,
                            struct shadow_boundary *boundary)
 {
-    find_weights(caster, toward, silhouette);
-    add_caps(caster, base, boundary);
-    if (silhouette)
-        add_walls(caster, base, ends, boundary);
+    find_weights(caster, extrusion);
+    add_caps(caster, extrusion->base, boundary);
+    if (extrusion->silhouette)
+        add_walls(caster, extrusion->base, extrusion->ends, boundary);
     else
-        add_all_walls(caster, base, ends, boundary);
+        add_all_walls(caster, extrusion->base, extrusion->ends, boundary);
 }

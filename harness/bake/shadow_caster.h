@@ -25,6 +25,7 @@ struct shadow_caster {
     uint32_t (*triangles)[3];
     float (*normals)[3]; /* a triangle, not unit */
     uint8_t *kinds;      /* enum shadow_kind, a triangle */
+    uint8_t *halves;     /* a triangle: 0 or 1, alike in what is connected, else at random */
     size_t edges_count;
     uint32_t (*edges)[2]; /* lower point first */
     uint32_t *first_side; /* edges_count + 1 */
@@ -46,11 +47,16 @@ struct shadow_boundary {
 /* Indices that walls may get; caps and leaf_caps may get a sixth of it each. */
 size_t shadow_caster_room(const struct shadow_caster *caster);
 
-/* Adds to a boundary. toward: to the sun, in the mesh's space, any length. The point i becomes base
- * + i, and its end base + i + ends. A wall is two triangles, of which the second has no area where
- * ends are one point. silhouette false: each triangle has a volume of its own, with three walls. */
-void shadow_caster_extrude(const struct shadow_caster *caster, const float toward[3],
-                           bool silhouette, uint32_t base, uint32_t ends,
+struct shadow_extrusion {
+    float toward[3];     /* to the sun, in the mesh's space, any length */
+    bool silhouette;     /* else each triangle has a volume of its own, with three walls */
+    int half;            /* of the triangles: those cast */
+    uint32_t base, ends; /* the point i becomes base + i, and its end base + i + ends */
+};
+/* Adds to a boundary. A wall is two triangles, of which the second has no area where ends are one
+ * point. */
+void shadow_caster_extrude(const struct shadow_caster *caster,
+                           const struct shadow_extrusion *extrusion,
                            struct shadow_boundary *boundary);
 
 #endif

@@ -1,5 +1,6 @@
 // Shadow volumes, and the trees that cast them. TREES: triangles in the world with their light, TEXTURED:
-// alpha-tested, FOG: with fog; else boundaries of volumes, which write nothing but the stencil.
+// alpha-tested, FOG: with fog; else boundaries of volumes, or MERGE: all of the picture, which write nothing but the
+// stencil.
 #pragma stage vertex
 #ifdef TREES
 layout(location = 0) in vec3 position;
@@ -26,6 +27,11 @@ void main()
     texture_uv = uv;
 #endif
     gl_Position = view_projection * vec4(position, 1.0);
+}
+#elif defined(MERGE)
+void main()
+{
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 }
 #else
 layout(location = 0) in vec4 position;  // w: 1, or 0 at infinity; points, then the ends of their walls

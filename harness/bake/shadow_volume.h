@@ -1,12 +1,13 @@
 /* Shadow volumes in the stencil buffer (Crow 1977, Heidmann 1991; Everitt and Kilgard 2002 for caps
  * at infinity, z-fail and wrapping): how many volumes each visible sample is within.
  *
- * What holds: the count is the true one modulo 256, in whatever order volumes come, since it wraps
- * both ways; a sample within a multiple of 256 volumes, but not 0, is taken for lit. Alpha-tested
- * triangles cast as if they were opaque. The edge of a shadow lies where the rasteriser puts the
- * wall: exact to the depth buffer's resolution, z^2 / (near 2^24) at depth z. The time is fill: a
- * tree of leaves has thousands of walls behind each pixel. So volumes end in the ground
- * (bake/shadow_floor.h), which no eye above it can tell; before a sample they may be open there. */
+ * What holds: counts are the true ones modulo 128 of two halves of what casts, in whatever order
+ * volumes come, since they wrap both ways (shadow_volume_count.c): a sample that is taken for lit
+ * is in a multiple of 128 volumes of either half. Alpha-tested triangles cast as if they were
+ * opaque. The edge of a shadow lies where the rasteriser puts the wall: exact to the depth buffer's
+ * resolution, z^2 / (near 2^24) at depth z. The time is fill: a tree of leaves has thousands of
+ * walls behind each pixel. So volumes end in the ground (bake/shadow_floor.h), which no eye above
+ * it can tell; before a sample they may be open there. */
 #ifndef TREELINE_BAKE_SHADOW_VOLUME_H
 #define TREELINE_BAKE_SHADOW_VOLUME_H
 
