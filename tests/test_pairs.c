@@ -1,9 +1,11 @@
 /* Pairs of cells without and with the sun's shadows: which rows are one. */
 #include "testing.h"
 
+#include "report/page.h"
 #include "report/pairs.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void add(struct arena *arena, struct run *run, const char *method, const char *options,
@@ -106,11 +108,44 @@ static void test_pairs__the_price_is_of_times_of_the_same_round(void **state)
     arena_destroy(arena);
 }
 
+/* What a run knows of both rows stands in one row of the table; a run without pairs has none. */
+static void test_pairs__the_page_sets_both_errors_and_the_price_beside_each_other(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct run *run = run_new(arena);
+    struct figures figures = {0};
+    for (int with = 0; with < 2; with++) {
+        char *text = NULL;
+        size_t size = 0;
+        add(arena, run, "polygons", with ? "shadow=map" : "", 0, with ? 0.0515 : 0.0206);
+        struct result *result = &run->results[with];
+        result->views_count = 1;
+        result->views = ARENA_NEW(arena, struct result_view);
+        result->views->compared = true;
+        result->views->full.value.flip = with ? 0.125 : 0.25;
+        result->host_bytes = with ? 7.25e6 : 2e6;
+        struct book *book = book_make(arena, run);
+        struct page page = {.book = book, .figures = &figures, .arena = arena};
+        page.out = open_memstream(&text, &size);
+        page_pairs(&page);
+        fclose(page.out);
+        if (with)
+            assert_true(strstr(text, "0.250 \u2192 0.125") && strstr(text, "20.6 \u2192 51.5") &&
+                        strstr(text, ">2.50<") && strstr(text, ">5.25<"));
+        else
+            assert_int_equal(size, 0);
+        free(text);
+    }
+    arena_destroy(arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs__a_switch_and_what_depends_on_it_may_differ_and_nothing_else),
         cmocka_unit_test(test_pairs__the_price_is_of_times_of_the_same_round),
+        cmocka_unit_test(test_pairs__the_page_sets_both_errors_and_the_price_beside_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,8 @@
  * Eight bits hold no more than 255, and a forest's leaves shade each other more often. Counts wrap,
  * both ways, so that order does not matter; but a sample within as many volumes as they wrap at
  * would be taken for lit. So what casts is counted in two halves, each modulo 128, and the eighth
- * bit keeps that the first half's count was none of 0: lit by mistake is what is within a multiple
- * of 128 volumes of one half and of the other, not of both 0. */
+ * bit keeps that the first half's count was not 0: lit by mistake is only what is within multiples
+ * of 128 volumes of both. */
 #include "bake/cull.h"
 #include "bake/shadow_volume_parts.h"
 

@@ -88,6 +88,9 @@ struct row {
     double values[COLUMNS_COUNT]; /* NaN: not measured */
 };
 
+/* The method's memory and GL objects; NaN where neither was measured. */
+double row_megabytes(const struct row *row);
+
 /* Cells that may be compared: of one scene, tree count, size and seed. */
 struct group {
     const char *scene, *title, *slug; /* slug: for file names and anchors */

@@ -59,6 +59,14 @@ const struct shown shown_table[] = {
 };
 const size_t shown_table_count = sizeof shown_table / sizeof *shown_table;
 
+double row_megabytes(const struct row *row)
+{
+    double host = row->values[COLUMN_host_bytes], device = row->values[COLUMN_device_bytes];
+    if (isnan(host) && isnan(device))
+        return NAN;
+    return 1e-6 * ((isnan(host) ? 0 : host) + (isnan(device) ? 0 : device));
+}
+
 static const char not_measured[] = "\u2013";
 
 /* Puts a comma between thousands of the whole part. */

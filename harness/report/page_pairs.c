@@ -2,8 +2,6 @@
 #include "report/page.h"
 #include "report/pairs.h"
 
-#include <math.h>
-
 /* Of both rows. */
 static const struct shown both_table[] = {
     {COLUMN_full_flip, "FLIP, all effects", "", 1},
@@ -32,12 +30,6 @@ static void put_heading(const struct page *page, const char *text, const char *u
 static void put_number(const struct page *page, double value)
 {
     fprintf(page->out, "<td class=\"n\">%s</td>", number_plain(value, 3).text);
-}
-
-static double memory_megabytes(const struct row *row)
-{
-    double host = row->values[COLUMN_host_bytes], device = row->values[COLUMN_device_bytes];
-    return 1e-6 * ((isnan(host) ? 0 : host) + (isnan(device) ? 0 : device));
 }
 
 static void put_head(const struct page *page)
@@ -75,7 +67,7 @@ static void put_pair(const struct page *page, const struct group *group,
             number_plain(pair->price.high, 3).text);
     for (int i = 0; i < WITH_COUNT; i++)
         put_number(page, with->values[with_table[i].column] * with_table[i].scale);
-    put_number(page, memory_megabytes(with) - memory_megabytes(without));
+    put_number(page, row_megabytes(with) - row_megabytes(without));
     page_text(page, "</tr>\n");
 }
 

@@ -7,14 +7,6 @@
 
 enum { LINES_MAX = 24 };
 
-static double memory_megabytes(const struct row *row)
-{
-    double host = row->values[COLUMN_host_bytes], device = row->values[COLUMN_device_bytes];
-    if (isnan(host) && isnan(device))
-        return NAN;
-    return 1e-6 * ((isnan(host) ? 0 : host) + (isnan(device) ? 0 : device));
-}
-
 /* What stands on the y axis; low and high are its interval. */
 static struct interval figure_of(const struct row *row, enum sweep_axis axis)
 {
@@ -24,7 +16,7 @@ static struct interval figure_of(const struct row *row, enum sweep_axis axis)
                                  1e3 * row->values[COLUMN_frame_seconds_low],
                                  1e3 * row->values[COLUMN_frame_seconds_high]};
     if (axis == SWEEP_MEMORY)
-        value = memory_megabytes(row);
+        value = row_megabytes(row);
     if (axis == SWEEP_MASK)
         value = 100 * row->values[COLUMN_mask_wrong];
     return (struct interval){value, value, value};
@@ -118,7 +110,7 @@ static void put_memories(struct plot *plot, const struct group *group, size_t me
     int block = -1;
     for (size_t i = 0; i < group->rows_count; i++) {
         const struct row *row = &book->rows[group->rows[i]];
-        double memory = memory_megabytes(row), error = row->values[COLUMN_same_flip];
+        double memory = row_megabytes(row), error = row->values[COLUMN_same_flip];
         if (row->method_index != method || row->is_floor || !(memory > 0) || !(error > 0))
             continue;
         if (block < 0)
@@ -143,7 +135,7 @@ enum status plot_memory(const struct book *book, const struct group *group, cons
     struct axis x = axis_empty(), y = axis_empty();
     for (size_t i = 0; i < group->rows_count; i++) {
         const struct row *row = &book->rows[group->rows[i]];
-        double memory = memory_megabytes(row);
+        double memory = row_megabytes(row);
         if (row->is_floor || !(memory > 0) || !(row->values[COLUMN_same_flip] > 0))
             continue;
         axis_add(&x, memory);
