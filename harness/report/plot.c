@@ -113,6 +113,61 @@ void plot_keep_clear(struct plot *plot, double x, double y)
             (struct plot_box){at_x - 5, at_x + 5, at_y - 5, at_y + 5};
 }
 
+void plot_keep_clear_line(struct plot *plot, double x, double y, double to_x, double to_y)
+{
+    double from[2] = {place_px(&plot->x, x, area_width_px), place_px(&plot->y, y, area_height_px)};
+    double to[2] = {place_px(&plot->x, to_x, area_width_px),
+                    place_px(&plot->y, to_y, area_height_px)};
+    if (plot->boxes_count < sizeof plot->boxes / sizeof *plot->boxes)
+        plot->boxes[plot->boxes_count++] =
+            (struct plot_box){fmin(from[0], to[0]) - 1, fmax(from[0], to[0]) + 1,
+                              fmin(from[1], to[1]) - 1, fmax(from[1], to[1]) + 1};
+}
+
+/* The value at so many pixels of an axis. */
+static double value_at(const struct axis *axis, double px, double length_px)
+{
+    return axis->low * pow(axis->high / axis->low, px / length_px);
+}
+
+void plot_number(struct plot *plot, double x, double y, int number)
+{
+    static const double steps_px[] = {11, 15, 20, 26, 33, 41, 50}, beside_px = 15;
+    enum { TURNS = 16 };
+    double at[2] = {place_px(&plot->x, x, area_width_px), place_px(&plot->y, y, area_height_px)};
+    double half = number < 10 ? 4 : 7;
+    struct plot_box box = {0};
+    for (size_t step = 0; step < sizeof steps_px / sizeof *steps_px; step++)
+        for (int turn = 0; turn < TURNS; turn++) {
+            /* up and to the right first */
+            double angle = M_PI / 4 + 2 * M_PI * turn / TURNS;
+            double middle[2] = {at[0] + steps_px[step] * cos(angle),
+                                at[1] + steps_px[step] * sin(angle)};
+            box = (struct plot_box){middle[0] - half, middle[0] + half, middle[1] - line_px / 2,
+                                    middle[1] + line_px / 2};
+            if (!box_is_free(plot, &box) ||
+                plot->boxes_count == sizeof plot->boxes / sizeof *plot->boxes)
+                continue;
+            plot->boxes[plot->boxes_count++] = box;
+            double to_x = value_at(&plot->x, middle[0], area_width_px);
+            double to_y = value_at(&plot->y, middle[1], area_height_px);
+            fprintf(plot->gp,
+                    "set label %d \"%d\" at %.9g,%.9g center font \",10\" textcolor rgb "
+                    "\"#%06x\" front\n",
+                    1000 + plot->numbers, number, to_x, to_y, tint_rgb(TINT_MUTED));
+            if (steps_px[step] > beside_px)
+                fprintf(plot->gp,
+                        "set arrow %d from %.9g,%.9g to %.9g,%.9g nohead linewidth 0.5 "
+                        "linecolor rgb \"#%06x\"\n",
+                        1000 + plot->numbers, x, y,
+                        value_at(&plot->x, middle[0] - (half + 1) * cos(angle), area_width_px),
+                        value_at(&plot->y, middle[1] - 6 * sin(angle), area_height_px),
+                        tint_rgb(TINT_MUTED));
+            plot->numbers++;
+            return;
+        }
+}
+
 void plot_note(struct plot *plot, double x, double y, const char *text)
 {
     /* Below a front nothing stands, so there first. Sides: -1 ends at the point, +1 begins there.

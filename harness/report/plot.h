@@ -20,6 +20,7 @@ struct plot {
     int key_rows; /* makes room under the plot */
     int columns;  /* of the key in the wide version; the narrow one has one */
     int notes;    /* labels that the narrow version leaves out */
+    int numbers;  /* labels of both */
     struct axis x, y;
     struct plot_box boxes[256]; /* where no label may stand */
     size_t boxes_count;
@@ -38,6 +39,11 @@ int plot_block(struct plot *plot, const char *what);
 void plot_curve(struct plot *plot);
 /* No label may cover this point. */
 void plot_keep_clear(struct plot *plot, double x, double y);
+/* Nor what is drawn from one point to another, along an axis. */
+void plot_keep_clear_line(struct plot *plot, double x, double y, double to_x, double to_y);
+/* A small number as near to a point as it covers nothing, with a line to the point where that is
+ * not beside it; in both versions. Call before the first curve. */
+void plot_number(struct plot *plot, double x, double y, int number);
 /* A small text beside a point, where it covers nothing; left out when there is no such place, and
  * in the narrow version. Call before the first curve. */
 void plot_note(struct plot *plot, double x, double y, const char *text);

@@ -90,61 +90,87 @@ static void masks_survey(struct masks *masks)
     axis_widen(&masks->y, 0.08, 0.1);
 }
 
-/* Every setting that there is room for has its name, those of the front first. */
-static void masks_notes(struct masks *masks)
+/* The next row of the method, from 0 on, that is drawn: those on the front first. False: no more.
+ */
+static bool next_row(const struct masks *masks, size_t method, size_t *step, size_t *row)
 {
-    struct plot *plot = &masks->plot;
-    const struct group *group = masks->group;
-    for (int pass = 0; pass < 3; pass++)
-        for (size_t i = 0; i < group->rows_count; i++) {
-            const struct row *row = &plot->book->rows[group->rows[i]];
-            if (!is_drawn(row))
-                continue;
-            double x = wrong_percent(masks, row), y = cost_ms(masks, row, COLUMN_frame_seconds);
-            if (pass == 0)
-                plot_keep_clear(plot, x, y);
-            else if (*row->variant && masks->on_front[i] == (pass == 1))
-                plot_note(plot, x, y, row->variant);
+    const size_t count = masks->group->rows_count;
+    for (; *step < 2 * count; ++*step) {
+        *row = *step % count;
+        const struct row *at = &masks->plot.book->rows[masks->group->rows[*row]];
+        if (at->method_index == method && masks->on_front[*row] == (*step < count) &&
+            is_drawn(at)) {
+            ++*step;
+            return true;
         }
-    if (!isnan(masks->floor))
-        fprintf(plot->gp,
-                "set arrow 1 from first %.9g, graph 0 to first %.9g, graph 1 nohead dashtype 3 "
-                "linecolor rgb \"#%06x\"\nset label 1 \"noise of the reference\" at first %.9g, "
-                "graph 0.98 right rotate by 90 offset 0.8,0 font \",10\" textcolor rgb \"#%06x\"\n",
-                masks->floor, masks->floor, tint_rgb(TINT_MUTED), masks->floor,
-                tint_rgb(TINT_MUTED));
+    }
+    return false;
 }
 
-/* Percent, smallest and largest over the views, ms, low, high: a method's points, filled on the
- * front. */
-static void masks_points(struct masks *masks, size_t method, bool front)
+static void keep_clear(struct masks *masks, const struct row *row)
+{
+    const double x = wrong_percent(masks, row), y = cost_ms(masks, row, COLUMN_frame_seconds);
+    struct axis range = views_range(row);
+    plot_keep_clear(&masks->plot, x, y);
+    plot_keep_clear_line(&masks->plot, fmax(range.low, masks->x.low), y,
+                         fmax(range.high, masks->x.low), y);
+    plot_keep_clear_line(&masks->plot, x, cost_ms(masks, row, COLUMN_frame_seconds_low), x,
+                         cost_ms(masks, row, COLUMN_frame_seconds_high));
+}
+
+static void put_floor(struct masks *masks)
+{
+    struct plot *plot = &masks->plot;
+    if (isnan(masks->floor))
+        return;
+    fprintf(plot->gp,
+            "set arrow 1 from first %.9g, graph 0 to first %.9g, graph 1 nohead dashtype 3 "
+            "linecolor rgb \"#%06x\"\nset label 1 \"noise of the reference\" at first %.9g, "
+            "graph 0.98 right rotate by 90 offset 0.8,0 font \",10\" textcolor rgb \"#%06x\"\n",
+            masks->floor, masks->floor, tint_rgb(TINT_MUTED), masks->floor, tint_rgb(TINT_MUTED));
+    for (double beside = 1; beside < 1.1; beside += 0.02) /* the line and its text */
+        plot_keep_clear_line(plot, beside * masks->floor, masks->y.low, beside * masks->floor,
+                             masks->y.high);
+}
+
+/* A number at every point, as the key counts them. */
+static void masks_numbers(struct masks *masks)
+{
+    const struct book *book = masks->plot.book;
+    size_t row, step;
+    int number = 0;
+    put_floor(masks);
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t m = 0; m < book->methods_count; m++)
+            for (step = 0; next_row(masks, m, &step, &row);) {
+                const struct row *at = &book->rows[masks->group->rows[row]];
+                if (pass == 0)
+                    keep_clear(masks, at);
+                else
+                    plot_number(&masks->plot, wrong_percent(masks, at),
+                                cost_ms(masks, at, COLUMN_frame_seconds), ++number);
+            }
+    fputs("set key font \",10\" spacing 1.1 maxcols 2\n", masks->plot.gp);
+}
+
+/* Percent, smallest and largest over the views, ms, low, high: filled on the front. */
+static void masks_point(struct masks *masks, const struct row *row, bool front)
 {
     struct plot *plot = &masks->plot;
     const struct book *book = plot->book;
-    int block = -1;
-    for (size_t i = 0; i < masks->group->rows_count; i++) {
-        const struct row *row = &book->rows[masks->group->rows[i]];
-        if (row->method_index != method || masks->on_front[i] != front || !is_drawn(row))
-            continue;
-        if (block < 0)
-            block = plot_block(plot, "percent ms smallest largest low high");
-        struct axis range = views_range(row);
-        fprintf(plot->dat, "%.9g %.9g %.9g %.9g %.9g %.9g # %s\n", wrong_percent(masks, row),
-                cost_ms(masks, row, COLUMN_frame_seconds), fmax(range.low, masks->x.low),
-                fmax(range.high, masks->x.low), cost_ms(masks, row, COLUMN_frame_seconds_low),
-                cost_ms(masks, row, COLUMN_frame_seconds_high), row->label);
-    }
-    if (block < 0)
-        return;
+    int block = plot_block(plot, "percent ms smallest largest low high");
+    struct axis range = views_range(row);
+    fprintf(plot->dat, "%.9g %.9g %.9g %.9g %.9g %.9g # %s\n", wrong_percent(masks, row),
+            cost_ms(masks, row, COLUMN_frame_seconds), fmax(range.low, masks->x.low),
+            fmax(range.high, masks->x.low), cost_ms(masks, row, COLUMN_frame_seconds_low),
+            cost_ms(masks, row, COLUMN_frame_seconds_high), row->label);
     plot_curve(plot);
     fprintf(plot->gp,
             "\"%s.dat\" index %d using 1:2:3:4:5:6 with xyerrorbars pointtype %d pointsize 0.9 "
             "linewidth 1 linecolor rgb \"#%06x\" title ",
-            plot->name, block, symbol_gnuplot(book, method, front),
-            tint_rgb(tint_method(book, method)));
-    plot_text(plot->gp, front ? arena_printf(book->arena, "%s, on the front", book->methods[method])
-                              : book->methods[method]);
-    plot->key_rows++;
+            plot->name, block, symbol_gnuplot(book, row->method_index, front),
+            tint_rgb(tint_method(book, row->method_index)));
+    plot_text(plot->gp, arena_printf(book->arena, "%d %s", ++plot->key_rows, row->label));
 }
 
 enum status plot_masks(const struct book *book, const struct group *group, const char *folder,
@@ -162,10 +188,11 @@ enum status plot_masks(const struct book *book, const struct group *group, const
     masks_survey(&masks);
     plot_axes(plot, &masks.x, &masks.y, "share of the surface whose shadow is wrong [%]",
               masks.base_seconds > 0 ? "time a frame over polygons' [ms]" : "time a frame [ms]");
-    masks_notes(&masks); /* settings stand before the first curve */
+    masks_numbers(&masks); /* before the first curve */
+    size_t row, step;
     for (size_t m = 0; m < book->methods_count; m++)
-        for (int front = 1; front >= 0; front--)
-            masks_points(&masks, m, front);
+        for (step = 0; next_row(&masks, m, &step, &row);)
+            masks_point(&masks, &book->rows[group->rows[row]], masks.on_front[row]);
     plot->columns = 2;
     plot->key_rows = (plot->key_rows + 1) / 2;
     return plot_close(plot, figure, error);
