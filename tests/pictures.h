@@ -63,6 +63,8 @@ struct setting {
     unsigned effects;
     enum lod lod;
     enum target_format format;
+    bool masked;               /* the shadow mask in place of light; by OpenGL */
+    const struct view *before; /* drawn first by the same method, of the same size; by OpenGL */
 };
 
 static inline struct picture picture_draw_cpu(struct arena *arena, const struct scene *scene,
@@ -115,13 +117,16 @@ static inline struct picture picture_draw(struct arena *arena, const struct scen
                                   .lod = setting->lod,
                                   .format = setting->format,
                                   .threads = 2,
-                                  .seed = 1};
+                                  .seed = 1,
+                                  .masked = setting->masked};
     void *options = arena_alloc(arena, 1, method->options_size);
     options_default(method->options, options);
     if (options_parse(method->options, setting->options, options, &error) != STATUS_OK ||
         gl_target(gl, view->width_px, view->height_px, setting->format, &target, &error) !=
             STATUS_OK ||
         method->prepare(&workspace, scene, options, &state) != STATUS_OK)
+        fail_msg("%s", error.text);
+    if (setting->before && method->draw(&workspace, state, setting->before, &target) != STATUS_OK)
         fail_msg("%s", error.text);
     gl_counters_reset(gl);
     if (method->draw(&workspace, state, view, &target) != STATUS_OK)

@@ -244,6 +244,16 @@ static void test_shadow_map__a_closed_mesh_has_no_acne_with_bias_and_much_withou
         fail_msg("with much bias: leak %g, acne %g", much.leak, much.acne);
 }
 
+/* Where a pixel reaches over many texels of the map, those between the taps count as well. */
+static void test_shadow_map__a_finer_map_is_no_worse_than_a_coarse_one(void **state)
+{
+    (void)state;
+    struct mask_error coarse = masked("stairs/shadow-map:size=512" STAIRS, 1).mask;
+    struct mask_error fine = masked("stairs/shadow-map:size=2048" STAIRS, 1).mask;
+    if (!(fine.wrong < 1.1 * coarse.wrong && coarse.wrong > 0.005))
+        fail_msg("wrong with 512 texels %g, with 2048 %g", coarse.wrong, fine.wrong);
+}
+
 static enum status take_nothing(void *context, size_t index, const struct frame *frame,
                                 struct error *error)
 {
@@ -299,6 +309,7 @@ int main(void)
         cmocka_unit_test(test_shadow_map__the_bias_of_the_closed_form_is_enough_and_none_less_is),
         cmocka_unit_test(test_shadow_map__in_a_valley_the_steeper_side_says_what_bias_is_enough),
         cmocka_unit_test(test_shadow_map__a_closed_mesh_has_no_acne_with_bias_and_much_without),
+        cmocka_unit_test(test_shadow_map__a_finer_map_is_no_worse_than_a_coarse_one),
         cmocka_unit_test(test_shadow_map__settings_at_both_ends_draw_finite_pictures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -184,32 +184,30 @@ enum status backdrop_prepare(struct workspace *workspace, const struct scene *sc
     return status == STATUS_OK ? gl_check(gl, "backdrop", workspace->error) : status;
 }
 
-/* What shadows are kept for the grid's own vertices needs all of them to be drawn. */
-static enum status need_all_drawn(struct workspace *workspace, const struct backdrop *backdrop)
-{
-    if (!backdrop->levels)
-        return STATUS_OK;
-    return error_set(workspace->error, STATUS_UNSUPPORTED,
-                     "terrain.detail_px: %g; allowed by shadow maps and horizon maps: 0 (every "
-                     "triangle is drawn)",
-                     (double)backdrop->scene->terrain.detail_px);
-}
-
 enum status backdrop_receive(struct workspace *workspace, struct backdrop *backdrop,
                              const struct shadow_map *map)
 {
-    enum status status = need_all_drawn(workspace, backdrop);
     backdrop->shadows = map;
+    if (backdrop->levels)
+        return backdrop_levels_receive(workspace, backdrop->levels, map);
     if (backdrop->chunks_count == 0)
-        return status;
+        return STATUS_OK;
     return shadow_map_program(workspace, map, "shadowed terrain", backdrop_glsl,
                               terrain_defines(workspace, backdrop->scene),
                               &backdrop->shadowed_program);
 }
 
+bool backdrop_cast_view(struct workspace *workspace, const struct backdrop *backdrop,
+                        const struct view *view)
+{
+    return backdrop->levels && backdrop_levels_cast_view(workspace, backdrop->levels, view);
+}
+
 void backdrop_cast(struct workspace *workspace, const struct backdrop *backdrop,
                    const struct shadow_pass *pass)
 {
+    if (backdrop->levels)
+        backdrop_levels_cast(workspace, backdrop->levels, pass);
     if (backdrop->chunks_count == 0 || horizon_is_flat(&backdrop->scene->terrain))
         return;
     const struct chunk *last = &backdrop->chunks[backdrop->chunks_count - 1];
@@ -224,9 +222,8 @@ enum status backdrop_skyline(struct workspace *workspace, struct backdrop *backd
                              const struct skyline *skyline, bool mixed)
 {
     struct gl *gl = workspace->gl;
-    enum status status = need_all_drawn(workspace, backdrop);
     if (!backdrop->chunks_count)
-        return status;
+        return STATUS_OK;
     backdrop->azimuths = skyline->azimuths;
     backdrop->mixed = mixed;
     backdrop->skylines = gl_texture(gl, GL_TEXTURE_2D_ARRAY, 1, GL_R32F, (int)skyline->samples_x,

@@ -14,10 +14,15 @@ struct shadow_pass;
 /* The ground receives the map's shadows from now on. */
 enum status backdrop_receive(struct workspace *workspace, struct backdrop *backdrop,
                              const struct shadow_map *map);
+/* Before a map's passes for a view: ground that is drawn by levels of detail casts what the view
+ * shows of it. True where that is not what cast before. */
+bool backdrop_cast_view(struct workspace *workspace, const struct backdrop *backdrop,
+                        const struct view *view);
 /* The ground, where it is bent, as a caster of a shadow map's pass. */
 void backdrop_cast(struct workspace *workspace, const struct backdrop *backdrop,
                    const struct shadow_pass *pass);
-/* From now on the terrain is drawn in the shadow of its horizon maps. mixed: of the two nearest
+/* From now on the terrain, all of whose triangles are drawn, is in the shadow of its horizon maps.
+ * mixed: of the two nearest
  * azimuths, else of the nearest, as Max 1988 has it. */
 enum status backdrop_skyline(struct workspace *workspace, struct backdrop *backdrop,
                              const struct skyline *skyline, bool mixed);

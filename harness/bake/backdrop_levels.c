@@ -10,9 +10,13 @@
 struct backdrop_levels {
     const struct scene *scene;
     struct terrain_levels *levels;
-    GLuint program, vertices, normals, colors; /* colors 0: none */
-    GLuint indices;
-    size_t indices_room;
+    GLuint program, normals, colors;  /* colors 0: none */
+    const struct shadow_map *shadows; /* received; NULL: none */
+    struct drawn {
+        GLuint vertices, indices;
+        size_t indices_room, count;
+    } seen, casters; /* casters: of the last view that something was cast into */
+    GLuint heights;
 };
 
 /* A row of normals, or of colours in sRGB, as texels of four. */
@@ -65,6 +69,27 @@ static GLuint terrain_texture(struct workspace *workspace, const struct terrain 
     return texture;
 }
 
+static enum status prepare_program(struct workspace *workspace, struct backdrop_levels *levels)
+{
+    const struct scene *scene = levels->scene;
+    bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
+    const char *defines = arena_printf(workspace->arena, "%s%s", fog ? "FOG 1\n" : "",
+                                       scene->terrain.colors ? "COLORS 1\n" : "");
+    return shadow_receiver_program(workspace, levels->shadows, "terrain levels",
+                                   backdrop_levels_glsl, defines, &levels->program);
+}
+
+/* An array of heights alone. */
+static GLuint vertices_of(struct gl *gl, GLuint heights)
+{
+    GLuint vertices = gl_vertex_array(gl);
+    gl->VertexArrayVertexBuffer(vertices, 0, heights, 0, sizeof(float));
+    gl->VertexArrayAttribFormat(vertices, 0, 1, GL_FLOAT, GL_FALSE, 0);
+    gl->VertexArrayAttribBinding(vertices, 0, 0);
+    gl->EnableVertexArrayAttrib(vertices, 0);
+    return vertices;
+}
+
 enum status backdrop_levels_prepare(struct workspace *workspace, const struct scene *scene,
                                     struct backdrop_levels **levels)
 {
@@ -82,32 +107,64 @@ enum status backdrop_levels_prepare(struct workspace *workspace, const struct sc
     made->normals = terrain_texture(workspace, terrain, false);
     made->colors = terrain->colors ? terrain_texture(workspace, terrain, true) : 0;
     const size_t samples = (size_t)terrain->samples_x * terrain->samples_z;
-    GLuint heights = gl_buffer(gl, (GLsizeiptr)(samples * sizeof(float)), terrain->heights_m, 0);
-    made->vertices = gl_vertex_array(gl);
-    gl->VertexArrayVertexBuffer(made->vertices, 0, heights, 0, sizeof(float));
-    gl->VertexArrayAttribFormat(made->vertices, 0, 1, GL_FLOAT, GL_FALSE, 0);
-    gl->VertexArrayAttribBinding(made->vertices, 0, 0);
-    gl->EnableVertexArrayAttrib(made->vertices, 0);
-    bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
-    const char *defines = arena_printf(workspace->arena, "%s%s", fog ? "FOG 1\n" : "",
-                                       terrain->colors ? "COLORS 1\n" : "");
-    return gl_program(gl, "terrain levels", backdrop_levels_glsl, defines, &made->program,
-                      workspace->error);
+    made->heights = gl_buffer(gl, (GLsizeiptr)(samples * sizeof(float)), terrain->heights_m, 0);
+    made->seen.vertices = vertices_of(gl, made->heights);
+    return prepare_program(workspace, made);
 }
 
-/* Indices of this view into a buffer that grows. */
-static void indices_put(struct gl *gl, struct backdrop_levels *levels, const uint32_t *indices,
-                        size_t count)
+enum status backdrop_levels_receive(struct workspace *workspace, struct backdrop_levels *levels,
+                                    const struct shadow_map *map)
 {
-    if (count > levels->indices_room) {
-        if (levels->indices)
-            gl_delete_buffer(gl, levels->indices);
-        levels->indices_room = count + count / 2;
-        levels->indices = gl_buffer(gl, (GLsizeiptr)(levels->indices_room * sizeof *indices), NULL,
-                                    GL_DYNAMIC_STORAGE_BIT);
-        gl->VertexArrayElementBuffer(levels->vertices, levels->indices);
+    levels->shadows = map;
+    levels->casters.vertices = vertices_of(workspace->gl, levels->heights);
+    return prepare_program(workspace, levels);
+}
+
+/* Indices into a buffer that grows. */
+static void indices_put(struct gl *gl, struct drawn *drawn, const uint32_t *indices, size_t count)
+{
+    if (count > drawn->indices_room) {
+        if (drawn->indices)
+            gl_delete_buffer(gl, drawn->indices);
+        drawn->indices_room = count + count / 2;
+        drawn->indices = gl_buffer(gl, (GLsizeiptr)(drawn->indices_room * sizeof *indices), NULL,
+                                   GL_DYNAMIC_STORAGE_BIT);
+        gl->VertexArrayElementBuffer(drawn->vertices, drawn->indices);
     }
-    gl->NamedBufferSubData(levels->indices, 0, (GLsizeiptr)(count * sizeof *indices), indices);
+    drawn->count = count;
+    gl->NamedBufferSubData(drawn->indices, 0, (GLsizeiptr)(count * sizeof *indices), indices);
+}
+
+/* Where a vertex stands: by its number and height. */
+static void place_uniforms(struct gl *gl, GLuint program, const struct terrain *terrain)
+{
+    gl->Uniform1i(gl_uniform(gl, program, "samples_x"), (GLint)terrain->samples_x);
+    gl->Uniform2f(gl_uniform(gl, program, "last_sample"), (float)(terrain->samples_x - 1),
+                  (float)(terrain->samples_z - 1));
+    gl->Uniform2f(gl_uniform(gl, program, "size_m"), terrain->size_x_m, terrain->size_z_m);
+}
+
+bool backdrop_levels_cast_view(struct workspace *workspace, struct backdrop_levels *levels,
+                               const struct view *view)
+{
+    const uint32_t *indices = NULL;
+    size_t count = 0;
+    bool changed = terrain_levels_cast(levels->levels, view, levels->scene->terrain.detail_px,
+                                       &indices, &count);
+    if (changed)
+        indices_put(workspace->gl, &levels->casters, indices, count);
+    return changed;
+}
+
+void backdrop_levels_cast(struct workspace *workspace, const struct backdrop_levels *levels,
+                          const struct shadow_pass *pass)
+{
+    struct gl *gl = workspace->gl;
+    const GLuint program = pass->programs[SHADOW_CAST_TERRAIN];
+    shadow_pass_use(workspace, pass, program);
+    place_uniforms(gl, program, &levels->scene->terrain);
+    gl->BindVertexArray(levels->casters.vertices);
+    gl_draw_elements(gl, GL_TRIANGLES, (GLsizei)levels->casters.count, GL_UNSIGNED_INT, 0, 1, 0, 0);
 }
 
 void backdrop_levels_draw(struct workspace *workspace, struct backdrop_levels *levels,
@@ -122,14 +179,12 @@ void backdrop_levels_draw(struct workspace *workspace, struct backdrop_levels *l
     if (!count)
         return;
     gl->UseProgram(program);
-    gl->BindVertexArray(levels->vertices);
-    indices_put(gl, levels, indices, count);
+    gl->BindVertexArray(levels->seen.vertices);
+    indices_put(gl, &levels->seen, indices, count);
     shade_uniforms(workspace, program, scene, view);
+    shadow_receiver_uniforms(workspace, levels->shadows, program);
     gl->Uniform3fv(gl_uniform(gl, program, "albedo"), 1, terrain->albedo);
-    gl->Uniform1i(gl_uniform(gl, program, "samples_x"), (GLint)terrain->samples_x);
-    gl->Uniform2f(gl_uniform(gl, program, "last_sample"), (float)(terrain->samples_x - 1),
-                  (float)(terrain->samples_z - 1));
-    gl->Uniform2f(gl_uniform(gl, program, "size_m"), terrain->size_x_m, terrain->size_z_m);
+    place_uniforms(gl, program, terrain);
     gl->BindTextureUnit(0, levels->normals);
     if (levels->colors)
         gl->BindTextureUnit(1, levels->colors);

@@ -1,5 +1,6 @@
 // A terrain by levels of detail: vertices from their number and height, normals and colours from textures of the full
-// grid, so that they do not change with the level. FOG: with fog. COLORS: of each vertex.
+// grid, so that they do not change with the level. FOG: with fog. COLORS: of each vertex. SHADOWED: behind
+// shadow_map.glsl.
 #pragma stage vertex
 layout(location = 0) in float height_m;
 uniform int samples_x;
@@ -30,6 +31,9 @@ void main()
 {
     vec2 texel = (place * last_sample + 0.5) / (last_sample + 1.0);  // samples stand in texels' middles
     vec3 normal = texture(normals, texel).xyz;
+#ifdef SHADOWED
+    sun_visibility = SHADOW_VISIBILITY(position_m, normal);
+#endif
     // a mean of normals is shorter than 1, and so is the mean of their light
     vec3 radiance = shade_lit(albedo, max(0.0, dot(gl_FrontFacing ? normal : -normal, sun_direction)));
 #ifdef COLORS

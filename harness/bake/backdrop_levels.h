@@ -2,7 +2,7 @@
 #ifndef TREELINE_BAKE_BACKDROP_LEVELS_H
 #define TREELINE_BAKE_BACKDROP_LEVELS_H
 
-#include "method/method.h"
+#include "bake/shadow_map.h"
 
 struct backdrop_levels;
 
@@ -15,5 +15,14 @@ enum status backdrop_levels_prepare(struct workspace *workspace, const struct sc
  */
 void backdrop_levels_draw(struct workspace *workspace, struct backdrop_levels *levels,
                           const struct view *view, bool above);
+/* Receives the map's shadows from now on. */
+enum status backdrop_levels_receive(struct workspace *workspace, struct backdrop_levels *levels,
+                                    const struct shadow_map *map);
+/* What casts into a view: every chunk at the level that the view draws it at, or would. True where
+ * that is not what cast before. */
+bool backdrop_levels_cast_view(struct workspace *workspace, struct backdrop_levels *levels,
+                               const struct view *view);
+void backdrop_levels_cast(struct workspace *workspace, const struct backdrop_levels *levels,
+                          const struct shadow_pass *pass);
 
 #endif

@@ -43,13 +43,23 @@ static bool has_twin(const struct sampling *sampling)
     return sampling->samples_texel > 1 || sampling->stencil;
 }
 
+struct view sampling_view(const struct sampling *sampling, const struct view *view)
+{
+    struct view drawn = *view;
+    if (has_twin(sampling)) {
+        drawn.width_px *= sampling->side;
+        drawn.height_px *= sampling->side;
+    }
+    return drawn;
+}
+
 enum status sampling_begin(struct workspace *workspace, struct sampling *sampling,
                            const struct target *target, const struct view *view, struct view *drawn)
 {
     struct gl *gl = workspace->gl;
     struct target *twin = &sampling->twin, enlarged = *target;
     enum status status = STATUS_OK;
-    *drawn = *view;
+    *drawn = sampling_view(sampling, view);
     if (!has_twin(sampling)) {
         gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
         return STATUS_OK;

@@ -37,6 +37,9 @@ enum status sampling_prepare(struct workspace *workspace, int samples, struct sa
 /* The twin has a stencil buffer; then one sample has a twin too. Before the first frame. */
 void sampling_stencil(struct sampling *sampling);
 
+/* The view with the size of what sampling_begin binds. */
+struct view sampling_view(const struct sampling *sampling, const struct view *view);
+
 /* Binds what is to be drawn into; drawn is view with its size. */
 enum status sampling_begin(struct workspace *workspace, struct sampling *sampling,
                            const struct target *target, const struct view *view,

@@ -1,8 +1,14 @@
-// What casts into a shadow map, with shadow_cover.glsl. TERRAIN: the ground; else triangles of plants, instanced.
-// PRUNED, TEXTURED: as of triangles.glsl.
+// What casts into a shadow map, with shadow_cover.glsl. TERRAIN: the ground, HEIGHTS: of numbered vertices, as in
+// backdrop_levels.glsl; else triangles of plants, instanced. PRUNED, TEXTURED: as of triangles.glsl.
 #pragma stage vertex
-layout(location = 0) in vec3 position;
 uniform mat4 light;
+#ifdef HEIGHTS
+layout(location = 0) in float height_m;
+uniform int samples_x;
+uniform vec2 last_sample, size_m;
+#else
+layout(location = 0) in vec3 position;
+#endif
 #ifndef TERRAIN
 layout(location = 5) in vec4 place;
 layout(location = 6) in vec4 turn;
@@ -22,7 +28,12 @@ uniform float elements;
 
 void main()
 {
+#ifdef HEIGHTS
+    vec2 at = vec2(float(gl_VertexID % samples_x), float(gl_VertexID / samples_x)) / last_sample;
+    vec3 world = vec3((at.x - 0.5) * size_m.x, height_m, (at.y - 0.5) * size_m.y);
+#else
     vec3 world = position;
+#endif
 #ifndef TERRAIN
     vec3 local = position;
 #ifdef PRUNED

@@ -80,6 +80,11 @@ const struct shadow_map *sun_shadows_map(const struct sun_shadows *shadows)
     return shadows ? shadows->map : NULL;
 }
 
+void sun_shadows_share(struct sun_shadows *shadows, struct shadow_share share)
+{
+    shadow_map_share(shadows->map, share);
+}
+
 uint64_t sun_shadows_samples(const struct sun_shadows *shadows)
 {
     return shadows ? (uint64_t)(shadows->taps * shadows->taps) : 0;

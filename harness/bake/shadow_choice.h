@@ -46,8 +46,7 @@ struct sun_shadows_request shadow_choice_request(const struct shadow_choice *cho
 
 struct sun_shadows;
 
-/* The map and what casts; the ground receives from now on. STATUS_UNSUPPORTED: ground that
- * is drawn by levels of detail. */
+/* The map and what casts; the ground receives from now on. */
 enum status sun_shadows_prepare(struct workspace *workspace, const struct scene *scene,
                                 const struct sun_shadows_request *request,
                                 struct backdrop *backdrop, struct sun_shadows **shadows);
@@ -59,10 +58,14 @@ enum status shadow_choice_prepare(struct workspace *workspace, const struct scen
 /* What receives; NULL of NULL. */
 const struct shadow_map *sun_shadows_map(const struct sun_shadows *shadows);
 
+/* shadow_map_share() of its map. */
+void sun_shadows_share(struct sun_shadows *shadows, struct shadow_share share);
+
 /* Samples of maps that a receiver's fragment takes; 0 of NULL. */
 uint64_t sun_shadows_samples(const struct sun_shadows *shadows);
 
-/* Before each picture: makes the map that its view needs (shadow_map_update). drawn: the method's
+/* Before each picture: makes the map that its view needs (shadow_map_update), with the size of what
+ * is drawn into. drawn: the method's
  * own triangles, which cast unless pictures do; NULL where the request said own. Nothing with
  * shadows NULL. */
 enum status sun_shadows_update(struct workspace *workspace, struct sun_shadows *shadows,

@@ -26,6 +26,7 @@ struct shadow_map {
     double axes[3][3];
     struct shadow_box casters;
     float forward[3];
+    struct shadow_share share;
 };
 
 static GLenum depth_format(int bits)
@@ -78,8 +79,9 @@ enum status shadow_cast_program(struct workspace *workspace, const struct shadow
 
 static enum status prepare_programs(struct workspace *workspace, struct shadow_map *map)
 {
-    static const char *const variants[SHADOW_CASTS] = {"TERRAIN 1\n", "", "TEXTURED 1\n",
-                                                       "PRUNED 1\n"};
+    const char *variants[SHADOW_CASTS] = {"TERRAIN 1\n", "", "TEXTURED 1\n", "PRUNED 1\n"};
+    if (map->scene->terrain.detail_px > 0)
+        variants[SHADOW_CAST_TERRAIN] = "TERRAIN 1\nHEIGHTS 1\n";
     for (int covers = 0; covers < (map->layers ? 2 : 1); covers++)
         for (int v = 0; v < SHADOW_CASTS; v++) {
             enum status status =
@@ -123,10 +125,10 @@ enum status shadow_map_program(struct workspace *workspace, const struct shadow_
                                GLuint *program)
 {
     const struct shadow_options *options = &map->options;
-    const char *all =
-        arena_printf(workspace->arena, "SHADOWED 1\nBIAS %d\nRADIUS %d\nLINEAR %d\nLAYERS %d\n%s",
-                     (int)options->bias, options->radius, options->linear && !map->layers,
-                     shadow_layers(options), defines ? defines : "");
+    const char *all = arena_printf(
+        workspace->arena, "SHADOWED 1\nBIAS %d\nRADIUS %d\nLINEAR %d\nLAYERS %d\n%s%s",
+        (int)options->bias, options->radius, options->linear && !map->layers,
+        shadow_layers(options), options->shared ? "SHARED 1\n" : "", defines ? defines : "");
     const char *text = arena_printf(workspace->arena, "%s\n%s", shadow_map_glsl, source);
     return gl_program(workspace->gl, name, text, all, program, workspace->error);
 }
@@ -255,6 +257,7 @@ enum status shadow_map_update(struct workspace *workspace, struct shadow_map *ma
 {
     struct gl *gl = workspace->gl;
     bool changed = fits_find(map, view);
+    changed |= backdrop_cast_view(workspace, backdrop, view);
     if (!changed && !workspace->counted)
         return STATUS_OK;
     double start = clock_wall_seconds();
@@ -269,6 +272,25 @@ enum status shadow_map_update(struct workspace *workspace, struct shadow_map *ma
         workspace->tally.shadow_bytes += bytes_of(&map->options);
     }
     return gl_check(gl, "shadow map", workspace->error);
+}
+
+void shadow_map_share(struct shadow_map *map, struct shadow_share share)
+{
+    map->share = share;
+}
+
+float shadow_map_fine_m(const struct shadow_map *map, const struct view *view, float texel_px)
+{
+    double fine_m = 0;
+    double pixel = 2 * tan(0.5 * (double)view->fov_y_rad) / view->height_px; /* m at 1 m */
+    for (int c = 0; c < map->options.cascades; c++) {
+        const struct shadow_fit *fit = &map->fits[c];
+        double texel_m = fmax(fit->texel_m[0], fit->texel_m[1]);
+        double from_m = fmin(texel_m / ((double)texel_px * pixel), map->ends_m[c + 1]);
+        if (from_m > map->ends_m[c])
+            fine_m = from_m;
+    }
+    return (float)fine_m;
 }
 
 void shadow_receiver_uniforms(struct workspace *workspace, const struct shadow_map *map,
@@ -301,6 +323,8 @@ void shadow_receiver_uniforms(struct workspace *workspace, const struct shadow_m
     gl->Uniform1f(gl_uniform(gl, program, "shadow_size"), (float)map->options.size_px);
     gl->Uniform1f(gl_uniform(gl, program, "shadow_step"), (float)step);
     gl->Uniform1f(gl_uniform(gl, program, "shadow_layer_m"), map->options.layer_m);
+    gl->Uniform3f(gl_uniform(gl, program, "shadow_share"), map->share.from_m, map->share.to_m,
+                  map->share.lit);
     gl->BindTextureUnit(UNIT_MAPS, map->maps);
     if (map->layers) {
         gl->BindTextureUnit(UNIT_FIRST, map->maps);

@@ -1,6 +1,7 @@
 // Receives a shadow map: shadow_visibility(). Stands before a receiver's stages. BIAS: 0 none, 1 constant, 2 by slope,
 // 3 receiver plane, 4 along the normal. RADIUS: (2 RADIUS + 1)^2 taps. LINEAR: taps are bilinear. LAYERS: 0 a depth is
-// solid, else the map holds the share of a texel that is covered to so many depths behind the first.
+// solid, else the map holds the share of a texel that is covered to so many depths behind the first. SHARED: what is
+// near is another's.
 layout(binding = 6) uniform sampler2DArrayShadow shadow_maps;
 #if LAYERS > 0
 layout(binding = 5) uniform sampler2DArray shadow_first;
@@ -15,6 +16,7 @@ uniform float shadow_bias;      // times what the closed form asks for
 uniform float shadow_size;      // texels a side
 uniform float shadow_step;      // of stored depths
 uniform float shadow_layer_m;
+uniform vec3 shadow_share;      // SHARED: nearer than x m, deep, lit is what z is; from y m on the map says it
 
 vec3 shadow_place(int cascade, vec3 position_m)
 {
@@ -45,9 +47,11 @@ float shadow_tap(int cascade, vec2 uv, float depth, float range_m)
 }
 #endif
 
+// For fragment stages: of what the pixel shows of a triangle.
+#define SHADOW_VISIBILITY(position, normal) shadow_of_pixel(position, normal, dFdx(position), dFdy(position))
+
 // The normal that a bias needs, of the triangle that is drawn: a smooth one may be flatter to the sun than the triangle
-// is, which then shades itself. For fragment stages; where pixels are too small for float positions, the smooth normal.
-#define SHADOW_FACET(position, smooth_normal) shadow_facet(dFdx(position), dFdy(position), position, smooth_normal)
+// is, which then shades itself. Where pixels are too small for float positions, the smooth normal.
 vec3 shadow_facet(vec3 right, vec3 down, vec3 position, vec3 smooth_normal)
 {
     vec3 facet = cross(right, down);
@@ -69,16 +73,48 @@ bool shadow_is_outside(vec3 at)
     return any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)));
 }
 
-// The filter about a place in the map; slope: depth a texel, of the receiver's plane.
-float shadow_filter(int cascade, vec3 at, vec2 slope)
+// The filter about a place in the map: so many taps along its sides, and from tap to tap these steps.
+struct ShadowFilter {
+    ivec2 taps;
+    mat2x3 steps;
+};
+
+// Taps a texel apart; slope: depth a texel, of the receiver's plane.
+ShadowFilter shadow_filter_of(vec2 slope)
 {
+    return ShadowFilter(ivec2(2 * RADIUS + 1),
+                        mat2x3(vec3(1.0 / shadow_size, 0.0, slope.x), vec3(0.0, 1.0 / shadow_size, slope.y)));
+}
+
+float shadow_filtered(int cascade, vec3 at, ShadowFilter f)
+{
+    vec3 first = at - f.steps * (0.5 * vec2(f.taps - 1));
     float sum = 0.0;
-    for (int y = -RADIUS; y <= RADIUS; y++)
-        for (int x = -RADIUS; x <= RADIUS; x++) {
-            float depth = at.z + slope.x * float(x) + slope.y * float(y);
-            sum += shadow_tap(cascade, at.xy + vec2(x, y) / shadow_size, clamp(depth, 0.0, 1.0), shadow_texel[cascade].z);
+    for (int y = 0; y < f.taps.y; y++)
+        for (int x = 0; x < f.taps.x; x++) {
+            vec3 tap = first + f.steps * vec2(x, y);
+            sum += shadow_tap(cascade, tap.xy, clamp(tap.z, 0.0, 1.0), shadow_texel[cascade].z);
         }
-    return sum / float((2 * RADIUS + 1) * (2 * RADIUS + 1));
+    return sum / float(f.taps.x * f.taps.y);
+}
+
+// Where a pixel reaches over more texels than the filter, taps stand all over the pixel, each at its own depth, two
+// texels apart or, in large pixels, farther, since texels that no tap looks at make a finer map worse than a coarse
+// one. right, down: a pixel's, m; of a surface that is seen along itself eight times the other at most.
+ShadowFilter shadow_spread(int cascade, vec3 position_m, vec3 right_m, vec3 down_m, ShadowFilter f)
+{
+    const float least = float(2 * RADIUS + 1), most = max(least, 8.0);
+    vec2 along_m = vec2(length(right_m), length(down_m));
+    vec2 kept = min(vec2(1.0), 8.0 * along_m.yx / max(along_m, 1e-20));
+    vec3 at = shadow_place(cascade, position_m);
+    mat2x3 pixel = mat2x3(shadow_place(cascade, position_m + kept.x * right_m) - at,
+                          shadow_place(cascade, position_m + kept.y * down_m) - at);
+    vec2 texels = vec2(length(pixel[0].xy), length(pixel[1].xy)) * shadow_size;
+    if (max(texels.x, texels.y) <= least)
+        return f;
+    vec2 wanted = max(texels, vec2(least)) / max(texels, vec2(1e-6));  // not closer than a texel either way
+    vec2 taps = clamp(ceil(0.5 * texels), least, most);
+    return ShadowFilter(ivec2(taps), mat2x3(pixel[0] * (wanted.x / taps.x), pixel[1] * (wanted.y / taps.y)));
 }
 
 // Of a place that is known to within_m, among matter without a surface of its own: a slice's, a picture's.
@@ -86,11 +122,11 @@ float shadow_visibility_within(vec3 position_m, float within_m)
 {
     int cascade = shadow_cascade(position_m);
     vec3 at = shadow_place(cascade, position_m + within_m * sun_direction);
-    return shadow_is_outside(at) ? 1.0 : shadow_filter(cascade, at - vec3(0.0, 0.0, shadow_step), vec2(0.0));
+    return shadow_is_outside(at) ? 1.0 : shadow_filtered(cascade, at - vec3(0.0, 0.0, shadow_step), shadow_filter_of(vec2(0.0)));
 }
 
-// normal need not be unit
-float shadow_visibility(vec3 position_m, vec3 normal)
+// right, down: a pixel's, m; 0: unknown
+float shadow_of_map(vec3 position_m, vec3 normal, vec3 right_m, vec3 down_m)
 {
     int cascade = shadow_cascade(position_m);
     const float reach = float(RADIUS) + (LINEAR == 1 ? 1.0 : 0.5);
@@ -122,5 +158,33 @@ float shadow_visibility(vec3 position_m, vec3 normal)
     bias += shadow_bias * within * (abs(slope.x) + abs(slope.y));
 #endif
     at.z -= bias;
-    return shadow_filter(cascade, at, BIAS == 3 ? shadow_bias * slope : vec2(0.0));
+    ShadowFilter f = shadow_filter_of(BIAS == 3 ? shadow_bias * slope : vec2(0.0));
+#if RADIUS > 0
+    f = shadow_spread(cascade, position_m, right_m, down_m, f);
+#endif
+    return shadow_filtered(cascade, at, f);
+}
+
+float shadow_shared(vec3 position_m, vec3 normal, vec3 right_m, vec3 down_m)
+{
+#ifdef SHARED
+    float depth_m = dot(position_m - eye_m, shadow_forward);
+    float share = clamp((depth_m - shadow_share.x) / (shadow_share.y - shadow_share.x), 0.0, 1.0);
+    if (share <= 0.0)
+        return shadow_share.z;
+    return mix(shadow_share.z, shadow_of_map(position_m, normal, right_m, down_m), share);
+#else
+    return shadow_of_map(position_m, normal, right_m, down_m);
+#endif
+}
+
+// normal need not be unit
+float shadow_visibility(vec3 position_m, vec3 normal)
+{
+    return shadow_shared(position_m, normal, vec3(0.0), vec3(0.0));
+}
+
+float shadow_of_pixel(vec3 position_m, vec3 smooth_normal, vec3 right_m, vec3 down_m)
+{
+    return shadow_shared(position_m, shadow_facet(right_m, down_m, position_m, smooth_normal), right_m, down_m);
 }

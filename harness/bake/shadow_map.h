@@ -32,6 +32,7 @@ struct shadow_options {
     float layer_m;   /* of SHADOW_DEEP, each of four */
     float caster_tx; /* how coarse a caster may be, in texels of the map; 0: every triangle */
     float reach_m;   /* shadows are received to this depth; 0: all of the view */
+    bool shared;     /* with what knows better near the eye: shadow_map_share */
 };
 
 struct shadow_map;
@@ -57,12 +58,25 @@ enum status shadow_map_program(struct workspace *workspace, const struct shadow_
                                const char *name, const char *source, const char *defines,
                                GLuint *program);
 
-/* Makes what the view needs anew: all maps where their fits have changed since the last call, else
- * nothing; always in a counted draw, whose tally it fills in. Changes the framebuffer that is
- * bound. */
+/* Makes what the view needs anew: all maps where their fits have changed since the last call, or
+ * the levels of detail that a large ground is drawn by, else nothing; always in a counted draw,
+ * whose tally it fills in. view: with the size of what is drawn into. Changes the framebuffer that
+ * is bound. */
 enum status shadow_map_update(struct workspace *workspace, struct shadow_map *map,
                               const struct view *view, const struct shadow_cast_by *trees,
                               const struct backdrop *backdrop);
+
+/* Of a map that is shared, until the next call: a receiver no deeper than from_m is lit, or not, as
+ * another says; from to_m on by the map alone; between them both count by the depth. */
+struct shadow_share {
+    float from_m, to_m;
+    bool lit;
+};
+void shadow_map_share(struct shadow_map *map, struct shadow_share share);
+
+/* The depth from which on a texel of the map, across the light, is no larger than texel_px pixels
+ * of a view; at most its far plane, 0 where that is so everywhere. After shadow_map_update. */
+float shadow_map_fine_m(const struct shadow_map *map, const struct view *view, float texel_px);
 
 /* For what receives if there is a map: gl_program() where map is NULL, else shadow_map_program();
  * and, of the program in use, uniforms and textures, none where map is NULL. */

@@ -1,10 +1,12 @@
 /* The three passes of a scene with shadow volumes (Abderrahmani 2018, 5.1): all surfaces in the
  * sky's light, volumes into the stencil buffer, all surfaces again in the sun's light where none is
- * counted. Of the relief also by horizon maps. */
+ * counted. Of the relief also by horizon maps. With a shadow map, volumes shade what is near: the
+ * first pass has the map's light beyond, and the third one what both say of the band between. */
 #ifndef TREELINE_BAKE_SHADOW_PASSES_H
 #define TREELINE_BAKE_SHADOW_PASSES_H
 
 #include "bake/sampling.h"
+#include "bake/shadow_choice.h"
 #include "bake/shadow_volume.h"
 
 struct shadow_passes_request {
@@ -14,6 +16,11 @@ struct shadow_passes_request {
     int azimuths; /* of horizon maps, and then the relief casts no volume; 0: none */
     int detail;   /* samples of them to one of the relief along each axis, at most */
     bool mixed;   /* of the two nearest azimuths */
+    /* Of what is deeper than near_m; NULL: none. Its options are shared, its casters own. */
+    const struct sun_shadows_request *map;
+    float near_m;   /* volumes shade what is nearer; 0: to where the map's texels are as small as */
+    float texel_px; /* so many pixels */
+    float blend;    /* share of that depth, 0..1, before whose end both count */
 };
 
 /* clang-format off */

@@ -2,6 +2,7 @@
 #include "bake/shadow_trees.h"
 #include "bake/backdrop.h"
 #include "bake/cull.h"
+#include "bake/shadow_map.h"
 
 #include "shadow_volume.glsl.h"
 
@@ -28,7 +29,8 @@ struct batch {
 
 struct shadow_trees {
     const struct scene *scene;
-    const struct mesh **meshes; /* a species */
+    const struct shadow_map *map; /* received; NULL: none */
+    const struct mesh **meshes;   /* a species */
     struct cull_bound *bounds;
     GLuint programs[2], vertices; /* program: of no texture, of one */
     size_t batches_count, runs_count;
@@ -202,11 +204,13 @@ static void fill(struct workspace *workspace, struct shadow_trees *trees, struct
 }
 
 enum status shadow_trees_prepare(struct workspace *workspace, const struct scene *scene,
-                                 int triangles_most, struct shadow_trees **trees)
+                                 int triangles_most, const struct shadow_map *map,
+                                 struct shadow_trees **trees)
 {
     struct shadow_trees *made = *trees = ARENA_NEW(workspace->arena, struct shadow_trees);
     enum status status = STATUS_OK;
     made->scene = scene;
+    made->map = map;
     made->meshes = arena_alloc(workspace->arena, scene->species_count, sizeof *made->meshes);
     made->bounds = ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count);
     for (size_t s = 0; s < scene->species_count && status == STATUS_OK; s++) {
@@ -218,10 +222,11 @@ enum status shadow_trees_prepare(struct workspace *workspace, const struct scene
         status = check_room(workspace, made, triangles_most);
     bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
     for (int textured = 0; textured < 2 && status == STATUS_OK; textured++)
-        status = gl_program(workspace->gl, "trees", shadow_volume_glsl,
-                            arena_printf(workspace->arena, "TREES 1\n%s%s",
-                                         textured ? "TEXTURED 1\n" : "", fog ? "FOG 1\n" : ""),
-                            &made->programs[textured], workspace->error);
+        status = shadow_receiver_program(workspace, map, "trees", shadow_volume_glsl,
+                                         arena_printf(workspace->arena, "TREES 1\n%s%s",
+                                                      textured ? "TEXTURED 1\n" : "",
+                                                      fog ? "FOG 1\n" : ""),
+                                         &made->programs[textured]);
     if (status != STATUS_OK)
         return status;
     struct arena *passing = arena_create(0);
@@ -264,6 +269,7 @@ void shadow_trees_draw(struct workspace *workspace, const struct shadow_trees *t
         GLuint program = trees->programs[batch->texture != 0];
         gl->UseProgram(program);
         shade_uniforms(workspace, program, trees->scene, view);
+        shadow_receiver_uniforms(workspace, trees->map, program);
         if (batch->texture)
             gl->BindTextureUnit(0, batch->texture);
         size_t first = 0, count = 0;

@@ -6,10 +6,13 @@
 #include "method/method.h"
 
 struct shadow_trees;
+struct shadow_map;
 
-/* STATUS_UNSUPPORTED where the trees have more triangles together than triangles_most. */
+/* map: whose shadows the trees receive; NULL: none. STATUS_UNSUPPORTED where the trees have more
+ * triangles together than triangles_most. */
 enum status shadow_trees_prepare(struct workspace *workspace, const struct scene *scene,
-                                 int triangles_most, struct shadow_trees **trees);
+                                 int triangles_most, const struct shadow_map *map,
+                                 struct shadow_trees **trees);
 /* A vertex of the instance's plant in the world: the same floats that are drawn. */
 void shadow_trees_place(const struct instance *instance, const float point[3], float world_m[3]);
 /* Triangles of the bound vertex array by 32-bit indices, to which base is added, in calls of

@@ -95,8 +95,8 @@ enum status shadow_volume_prepare(struct workspace *workspace, const struct scen
         status = gl_program(gl, "shadow volume", shadow_volume_glsl, NULL, &made->program,
                             workspace->error);
     if (status == STATUS_OK)
-        status = gl_program(gl, "shadow volume", shadow_volume_glsl, "MERGE 1",
-                            &made->merge_program, workspace->error);
+        status = gl_program(gl, "all of the picture", shadow_volume_glsl, "WHOLE 1",
+                            &made->whole_program, workspace->error);
     if (status != STATUS_OK)
         return status;
     for (int s = 0; s < STRETCHES; s++)
@@ -169,15 +169,36 @@ static void place_ends(struct gl *gl, struct shadow_volume *volume, const float 
     arena_destroy(passing);
 }
 
-static void extrude(struct workspace *workspace, struct shadow_volume *volume,
-                    const float sun_direction[3])
+/* Whether a piece's shadow, its sphere swept away from the sun, comes as near to the eye as
+ * radius_m. */
+static bool comes_near(const struct shadow_piece *piece, const float sun[3], const float eye_m[3],
+                       float radius_m)
 {
-    memcpy(volume->sun, sun_direction, sizeof volume->sun);
+    float along_m = 0, square = 0, reach_m = radius_m + 1.001f * piece->radius_m;
+    float length_m = isnan(piece->floor_m)
+                         ? INFINITY
+                         : (piece->center_m[1] + piece->radius_m - piece->floor_m) / sun[1];
+    for (int axis = 0; axis < 3; axis++)
+        along_m += (piece->center_m[axis] - eye_m[axis]) * sun[axis];
+    along_m = fminf(fmaxf(along_m, 0), length_m);
+    for (int axis = 0; axis < 3; axis++) {
+        float away_m = piece->center_m[axis] - along_m * sun[axis] - eye_m[axis];
+        square += away_m * away_m;
+    }
+    return square <= reach_m * reach_m;
+}
+
+/* Boundaries of all pieces whose shadows come so near. */
+static void extrude(struct workspace *workspace, struct shadow_volume *volume, const float eye_m[3],
+                    float radius_m)
+{
     struct shadow_boundary boundary = {.walls = volume->lists[WALLS],
                                        .caps = volume->lists[CAPS],
                                        .leaf_caps = volume->lists[LEAF_CAPS]};
     const size_t *counts[STRETCHES] = {&boundary.walls_count, &boundary.caps_count,
                                        &boundary.leaf_caps_count};
+    for (size_t p = 0; p < volume->pieces_count; p++)
+        volume->pieces[p].extruded = comes_near(&volume->pieces[p], volume->sun, eye_m, radius_m);
     for (int half = 0; half < HALVES; half++)
         for (size_t p = 0; p < volume->pieces_count; p++) {
             struct shadow_piece *piece = &volume->pieces[p];
@@ -185,25 +206,51 @@ static void extrude(struct workspace *workspace, struct shadow_volume *volume,
                                                  .half = half,
                                                  .base = piece->base,
                                                  .ends = (uint32_t)volume->points_count};
-            toward_sun(piece->instance, sun_direction, extrusion.toward);
+            toward_sun(piece->instance, volume->sun, extrusion.toward);
             for (int s = 0; s < STRETCHES; s++)
                 piece->first[half][s] = *counts[s];
-            shadow_caster_extrude(piece->caster, &extrusion, &boundary);
+            if (piece->extruded)
+                shadow_caster_extrude(piece->caster, &extrusion, &boundary);
             for (int s = 0; s < STRETCHES; s++)
                 piece->count[half][s] = *counts[s] - piece->first[half][s];
         }
-    place_ends(workspace->gl, volume, sun_direction);
     upload_indices(workspace->gl, volume,
                    (size_t[]){boundary.walls_count, boundary.caps_count, boundary.leaf_caps_count});
 }
 
-void shadow_volume_extrude(struct workspace *workspace, struct shadow_volume *volume,
-                           const float sun_direction[3])
+/* The sun's new place; true where no piece has boundaries for it yet. */
+static bool turn(struct gl *gl, struct shadow_volume *volume, const float sun_direction[3])
 {
-    if (!workspace->counted && memcmp(volume->sun, sun_direction, sizeof volume->sun) == 0)
-        return;
+    if (memcmp(volume->sun, sun_direction, sizeof volume->sun) == 0)
+        return false;
+    memcpy(volume->sun, sun_direction, sizeof volume->sun);
+    place_ends(gl, volume, sun_direction);
+    return true;
+}
+
+/* How far from the eye a sample of the view may be that is no deeper than deep_m. */
+static float zone_radius(const struct view *view, float deep_m)
+{
+    float up = tanf(0.5f * view->fov_y_rad);
+    float right = up * (float)view->width_px / (float)view->height_px;
+    return deep_m * sqrtf(1 + up * up + right * right);
+}
+
+void shadow_volume_extrude(struct workspace *workspace, struct shadow_volume *volume,
+                           const struct view *view, float deep_m)
+{
+    static const float margin = 1.25f; /* for the eye to move in */
+    const float radius_m = zone_radius(view, deep_m);
     double start = clock_wall_seconds();
-    extrude(workspace, volume, sun_direction);
+    if (workspace->counted)
+        memset(volume->sun, 0, sizeof volume->sun);
+    bool lacks = turn(workspace->gl, volume, view->sun_direction);
+    for (size_t p = 0; p < volume->pieces_count && !lacks; p++)
+        lacks = !volume->pieces[p].extruded &&
+                comes_near(&volume->pieces[p], volume->sun, view->eye_m, radius_m);
+    if (!lacks)
+        return;
+    extrude(workspace, volume, view->eye_m, margin * radius_m);
     if (!workspace->counted)
         return;
     workspace->gl->Finish();

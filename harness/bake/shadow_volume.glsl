@@ -1,12 +1,12 @@
 // Shadow volumes, and the trees that cast them. TREES: triangles in the world with their light, TEXTURED:
-// alpha-tested, FOG: with fog; else boundaries of volumes, or MERGE: all of the picture, which write nothing but the
-// stencil.
+// alpha-tested, FOG: with fog, SHADOWED: behind shadow_map.glsl; else boundaries of volumes, or, WHOLE, one triangle
+// over the picture, which write nothing but the stencil.
 #pragma stage vertex
 #ifdef TREES
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;  // w: 1 leaf, 0 bark
 layout(location = 2) in vec4 albedo;
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
 centroid out vec3 position_m;
 #endif
 centroid out vec3 shading_normal;
@@ -18,7 +18,7 @@ sample out vec2 texture_uv;
 
 void main()
 {
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
     position_m = position;
 #endif
     shading_normal = normal.xyz;
@@ -28,16 +28,19 @@ void main()
 #endif
     gl_Position = view_projection * vec4(position, 1.0);
 }
-#elif defined(MERGE)
+#elif defined(WHOLE)
+uniform float depth;  // in clip space
+
 void main()
 {
-    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, depth, 1.0);
 }
 #else
 layout(location = 0) in vec4 position;  // w: 1, or 0 at infinity; points, then the ends of their walls
 uniform int points;
 uniform bool endless;  // all ends are at infinity
 uniform vec3 away;     // from the sun
+uniform float deep_m;  // what is deeper is dropped; 0: nothing
 
 void main()
 {
@@ -45,13 +48,14 @@ void main()
     // the very expression that surfaces are drawn with, so that a cap has its surface's depth
     vec4 near = view_projection * vec4(at.xyz, 1.0);
     gl_Position = at.w > 0.0 ? near : view_projection * vec4(at.xyz, 0.0);
+    gl_ClipDistance[0] = deep_m > 0.0 ? deep_m * at.w - gl_Position.w : 0.0;
 }
 #endif
 
 #pragma stage fragment
 #ifdef TREES
 layout(location = 0) out vec4 color;
-#ifdef FOG
+#if defined(FOG) || defined(SHADOWED)
 centroid in vec3 position_m;
 #endif
 centroid in vec3 shading_normal;
@@ -69,6 +73,9 @@ void main()
     if (texel.a < 0.5)
         discard;
     a *= texel.rgb;
+#endif
+#ifdef SHADOWED
+    sun_visibility = SHADOW_VISIBILITY(position_m, shading_normal);
 #endif
     vec3 lit = surface_albedo.w > 0.5 ? shade_leaf(a, shading_normal, gl_FrontFacing)
                          : shade_bark(a, shading_normal, gl_FrontFacing);

@@ -30,17 +30,19 @@ struct shadow_volume;
 enum status shadow_volume_prepare(struct workspace *workspace, const struct scene *scene,
                                   const struct shadow_volume_request *request,
                                   struct shadow_volume **volume);
-/* The boundaries for a sun: nothing to do when it stands where it stood. Made anew in draws that
- * are counted, and tallied; counting them into the stencil is part of every frame. */
+/* The boundaries for the view's sun, of all whose shadows may be seen to a depth of deep_m;
+ * INFINITY: of all. Nothing to do when the sun stands where it stood and the eye has not left what
+ * they were made for. Made anew in draws that are counted, and tallied; counting them into the
+ * stencil is part of every frame. */
 void shadow_volume_extrude(struct workspace *workspace, struct shadow_volume *volume,
-                           const float sun_direction[3]);
+                           const struct view *view, float deep_m);
 /* The far plane is moved to infinity: what must be drawn with volumes, surfaces too. */
 void shadow_volume_view(struct view *view);
 /* Clears the stencil of the bound framebuffer and counts into it. Surfaces must be drawn, with the
  * same view and as the very triangles that cast; depth is not changed. Leaves the stencil test on,
- * passing where the count is 0, until shadow_volume_end. */
+ * passing where the count is 0 and the sample is no deeper than deep_m, until shadow_volume_end. */
 void shadow_volume_count(struct workspace *workspace, const struct shadow_volume *volume,
-                         const struct view *view);
+                         const struct view *view, float deep_m);
 void shadow_volume_end(struct workspace *workspace);
 
 #endif

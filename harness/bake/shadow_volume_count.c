@@ -21,6 +21,21 @@ void shadow_volume_view(struct view *view)
     view->view_projection[3][2] -= 2 * view->near_m;
 }
 
+/* Planes that a volume must come within to be seen: the four sides of the view, and the end of the
+ * depths that are asked for. Near and far are no borders to a volume. */
+enum { SIDES = 4, PLANES = 5 };
+
+static void planes_of(const struct view *view, float deep_m, float planes[6][4])
+{
+    cull_planes(view, planes);
+    float *end = planes[SIDES], eye = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        end[axis] = -view->forward[axis];
+        eye += view->forward[axis] * view->eye_m[axis];
+    }
+    end[3] = eye + deep_m; /* an infinite one excludes nothing */
+}
+
 /* Whether a piece's volume may be seen: its sphere, swept away from the sun, is outside of no
  * plane. */
 static bool is_seen(const struct shadow_piece *piece, float planes[6][4], const float sun[3],
@@ -28,7 +43,7 @@ static bool is_seen(const struct shadow_piece *piece, float planes[6][4], const 
 {
     bool ended = !endless && !isnan(piece->floor_m);
     float length_m = ended ? (piece->center_m[1] + piece->radius_m - piece->floor_m) / sun[1] : 0;
-    for (int i = 0; i < 4; i++) { /* near and far are no borders to a volume */
+    for (int i = 0; i < PLANES; i++) {
         const float *n = planes[i];
         float along = n[0] * sun[0] + n[1] * sun[1] + n[2] * sun[2];
         float at = n[0] * piece->center_m[0] + n[1] * piece->center_m[1] +
@@ -128,31 +143,46 @@ static void draw_boundaries(struct gl *gl, const struct tally *tally)
     gl->Disable(GL_POLYGON_OFFSET_FILL);
 }
 
-/* Where the half was counted, the eighth bit is set; the other seven are 0 for the next half. */
-static void merge(struct gl *gl, const struct shadow_volume *volume)
+/* One triangle over the picture, at a depth in clip space, where the stencil passes: ref is
+ * written. */
+static void cover(struct gl *gl, const struct shadow_volume *volume, float depth)
 {
-    gl->UseProgram(volume->merge_program);
-    gl->Disable(GL_DEPTH_TEST);
+    gl->UseProgram(volume->whole_program);
+    gl->Uniform1f(gl_uniform(gl, volume->whole_program, "depth"), depth);
     gl->StencilMask(COUNT_BITS | KEPT_BIT);
-    gl->StencilFunc(GL_NOTEQUAL, KEPT_BIT, COUNT_BITS);
     gl->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
     gl_draw_arrays(gl, GL_TRIANGLES, 0, 3, 1);
     gl->StencilFunc(GL_ALWAYS, 0, 0xff);
-    gl->Enable(GL_DEPTH_TEST);
     gl->UseProgram(volume->program);
 }
 
-void shadow_volume_count(struct workspace *workspace, const struct shadow_volume *volume,
-                         const struct view *view)
+/* Where the half was counted, the eighth bit is set; the other seven are 0 for the next half. */
+static void merge(struct gl *gl, const struct shadow_volume *volume)
+{
+    gl->Disable(GL_DEPTH_TEST);
+    gl->StencilFunc(GL_NOTEQUAL, KEPT_BIT, COUNT_BITS);
+    cover(gl, volume, 0);
+    gl->Enable(GL_DEPTH_TEST);
+}
+
+/* Samples deeper than deep_m count as within a volume: what the sun lights there is another's. */
+static void mark_beyond(struct gl *gl, const struct shadow_volume *volume, const struct view *view,
+                        float deep_m)
+{
+    gl->StencilFunc(GL_ALWAYS, 1, 0xff);
+    cover(gl, volume, 1 - 2 * view->near_m / deep_m);
+}
+
+static void count_pieces(struct workspace *workspace, const struct shadow_volume *volume,
+                         const struct view *view, float deep_m)
 {
     struct gl *gl = workspace->gl;
     struct arena *passing = arena_create(0);
     struct tally tally = {.volume = volume,
                           .counted = ARENA_ARRAY(passing, bool, volume->pieces_count + 1)};
+    const bool endless = !shadow_floor_is_below(volume->ground, view);
     float planes[6][4];
-    cull_planes(view, planes);
-    gl->ClearStencil(0);
-    gl->Clear(GL_STENCIL_BUFFER_BIT);
+    planes_of(view, deep_m, planes);
     gl->UseProgram(volume->program);
     gl->BindVertexArray(volume->vertices);
     gl->UniformMatrix4fv(gl_uniform(gl, volume->program, "view_projection"), 1, GL_FALSE,
@@ -160,14 +190,6 @@ void shadow_volume_count(struct workspace *workspace, const struct shadow_volume
     gl->Uniform1i(gl_uniform(gl, volume->program, "points"), (GLint)volume->points_count);
     gl->Uniform3f(gl_uniform(gl, volume->program, "away"), -volume->sun[0], -volume->sun[1],
                   -volume->sun[2]);
-    gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    gl->DepthMask(GL_FALSE);
-    gl->DepthFunc(GL_LESS);
-    gl->Enable(GL_DEPTH_TEST);
-    gl->Enable(GL_DEPTH_CLAMP);
-    gl->Enable(GL_STENCIL_TEST);
-    gl->StencilFunc(GL_ALWAYS, 0, 0xff);
-    bool endless = !shadow_floor_is_below(volume->ground, view);
     gl->Uniform1i(gl_uniform(gl, volume->program, "endless"), endless);
     for (int pass = 0; pass < 2 * HALVES; pass++) {
         tally.half = pass / 2;
@@ -175,18 +197,42 @@ void shadow_volume_count(struct workspace *workspace, const struct shadow_volume
         for (size_t p = 0; p < volume->pieces_count; p++)
             tally.counted[p] =
                 is_counted(volume, &volume->pieces[p], view, planes, tally.z_fail, endless);
+        /* no sample that is asked for is behind what is deeper */
+        const bool clips = isfinite(deep_m) && !tally.z_fail;
+        gl->Uniform1f(gl_uniform(gl, volume->program, "deep_m"), clips ? deep_m : 0);
+        if (clips)
+            gl->Enable(GL_CLIP_DISTANCE0);
         gl->StencilMask(COUNT_BITS);
         draw_boundaries(gl, &tally);
+        gl->Disable(GL_CLIP_DISTANCE0);
         if (pass == 1)
             merge(gl, volume);
     }
+    arena_destroy(passing);
+}
+
+void shadow_volume_count(struct workspace *workspace, const struct shadow_volume *volume,
+                         const struct view *view, float deep_m)
+{
+    struct gl *gl = workspace->gl;
+    gl->ClearStencil(0);
+    gl->Clear(GL_STENCIL_BUFFER_BIT);
+    gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    gl->DepthMask(GL_FALSE);
+    gl->DepthFunc(GL_LESS);
+    gl->Enable(GL_DEPTH_TEST);
+    gl->Enable(GL_DEPTH_CLAMP);
+    gl->Enable(GL_STENCIL_TEST);
+    gl->StencilFunc(GL_ALWAYS, 0, 0xff);
+    count_pieces(workspace, volume, view, deep_m);
+    if (isfinite(deep_m))
+        mark_beyond(gl, volume, view, deep_m);
     gl->StencilMask(COUNT_BITS | KEPT_BIT);
     gl->Disable(GL_DEPTH_CLAMP);
     gl->DepthMask(GL_TRUE);
     gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
     gl->StencilFunc(GL_EQUAL, 0, 0xff);
-    arena_destroy(passing);
 }
 
 void shadow_volume_end(struct workspace *workspace)

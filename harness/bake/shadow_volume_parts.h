@@ -21,6 +21,7 @@ struct shadow_piece {
     uint32_t base;                   /* its first point */
     float center_m[3], radius_m;     /* of a sphere that holds it */
     float floor_m;                   /* its walls end there; NaN: at infinity */
+    bool extruded;                   /* has boundaries for the sun as it stands */
     size_t first[HALVES][STRETCHES], count[HALVES][STRETCHES]; /* indices */
 };
 
@@ -29,8 +30,8 @@ struct shadow_volume {
     size_t pieces_count, points_count;
     struct shadow_piece *pieces;
     struct shadow_floor *ground;
-    float (*places_m)[3]; /* of points, in the world */
-    GLuint program, merge_program, vertices, points, indices;
+    float (*places_m)[3];                                     /* of points, in the world */
+    GLuint program, whole_program, vertices, points, indices; /* whole: all of the picture */
     size_t room[STRETCHES], offset[STRETCHES]; /* indices that may come; begin in the buffer */
     size_t indices_room;                       /* of the buffer */
     uint32_t *lists[STRETCHES];

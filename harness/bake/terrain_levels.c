@@ -18,6 +18,7 @@ struct terrain_levels {
     struct chunk_kind kinds[2][2]; /* [last of a column][last of a row] */
     struct chunk *chunks;
     int8_t *chosen; /* BESIDE_NONE: level 0, and so are the neighbours */
+    int8_t *cast;   /* chosen, when terrain_levels_cast was last called; NULL: not yet */
     uint32_t *indices;
     size_t indices_room;
 };
@@ -185,23 +186,28 @@ static void room_for(struct terrain_levels *levels, size_t filled, size_t more)
     levels->indices_room = room;
 }
 
-size_t terrain_levels_view(struct terrain_levels *levels, const struct view *view, float bound_px,
-                           const uint32_t **indices)
+static void levels_choose_all(struct terrain_levels *levels, const struct view *view,
+                              float bound_px)
 {
     const float up = tanf(0.5f * view->fov_y_rad);
     const float right = up * (float)view->width_px / (float)view->height_px;
     const struct lens lens = {view, 0.5f * (float)view->height_px / up,
                               sqrtf(1 + up * up + right * right), bound_px};
-    const uint32_t samples_x = levels->terrain->samples_x;
-    size_t filled = 0;
     for (uint32_t z = 0; z < levels->chunks_z; z++)
         for (uint32_t x = 0; x < levels->chunks_x; x++)
             levels->chosen[(size_t)z * levels->chunks_x + x] =
                 (int8_t)chunk_level(levels, x, z, &lens);
     levels_restrict(levels);
+}
+
+/* seen_by: of the chunks that it may see; NULL: of all. */
+static size_t levels_fill_indices(struct terrain_levels *levels, const struct view *seen_by)
+{
+    const uint32_t samples_x = levels->terrain->samples_x;
+    size_t filled = 0;
     for (uint32_t z = 0; z < levels->chunks_z; z++)
         for (uint32_t x = 0; x < levels->chunks_x; x++) {
-            if (!chunk_is_seen(levels, x, z, view))
+            if (seen_by && !chunk_is_seen(levels, x, z, seen_by))
                 continue;
             const int level = level_of(levels, (size_t)z * levels->chunks_x + x);
             const struct pattern *pattern =
@@ -213,6 +219,29 @@ size_t terrain_levels_view(struct terrain_levels *levels, const struct view *vie
                     levels->indices[filled++] =
                         first + pattern->triangles[t][k].z * samples_x + pattern->triangles[t][k].x;
         }
-    *indices = levels->indices;
     return filled;
+}
+
+size_t terrain_levels_view(struct terrain_levels *levels, const struct view *view, float bound_px,
+                           const uint32_t **indices)
+{
+    levels_choose_all(levels, view, bound_px);
+    size_t count = levels_fill_indices(levels, view);
+    *indices = levels->indices;
+    return count;
+}
+
+bool terrain_levels_cast(struct terrain_levels *levels, const struct view *view, float bound_px,
+                         const uint32_t **indices, size_t *count)
+{
+    const size_t chunks = (size_t)levels->chunks_x * levels->chunks_z;
+    levels_choose_all(levels, view, bound_px);
+    if (levels->cast && memcmp(levels->cast, levels->chosen, chunks) == 0)
+        return false;
+    if (!levels->cast)
+        levels->cast = ARENA_ARRAY(levels->arena, int8_t, chunks);
+    memcpy(levels->cast, levels->chosen, chunks);
+    *count = levels_fill_indices(levels, NULL);
+    *indices = levels->indices;
+    return true;
 }

@@ -26,4 +26,9 @@ struct terrain_levels *terrain_levels_create(struct arena *arena, const struct t
 size_t terrain_levels_view(struct terrain_levels *levels, const struct view *view, float bound_px,
                            const uint32_t **indices);
 
+/* The triangles of the same levels of all chunks, seen or not: what casts into the view. False: the
+ * levels are those of the last call, whose triangles they are still, and nothing is filled in. */
+bool terrain_levels_cast(struct terrain_levels *levels, const struct view *view, float bound_px,
+                         const uint32_t **indices, size_t *count);
+
 #endif

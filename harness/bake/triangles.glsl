@@ -137,7 +137,7 @@ void main()
     a *= texel.rgb;
 #endif
 #ifdef SHADOWED
-    sun_visibility = shadow_visibility(position_m, SHADOW_FACET(position_m, shading_normal));
+    sun_visibility = SHADOW_VISIBILITY(position_m, shading_normal);
 #endif
 #ifdef LEAF
     vec3 lit = shade_leaf(a, shading_normal, gl_FrontFacing);

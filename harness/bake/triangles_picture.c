@@ -40,8 +40,9 @@ enum status triangles_picture_draw(struct workspace *workspace, void *state,
                                    const struct view *view, struct target *target)
 {
     struct triangles_picture *picture = state;
-    struct view drawn;
-    enum status status = sun_shadows_update(workspace, picture->shadows, view, picture->triangles);
+    struct view drawn = sampling_view(picture->sampling, view);
+    enum status status =
+        sun_shadows_update(workspace, picture->shadows, &drawn, picture->triangles);
     if (status == STATUS_OK)
         status = sampling_begin(workspace, picture->sampling, target, view, &drawn);
     if (status != STATUS_OK)

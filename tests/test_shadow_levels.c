@@ -1,0 +1,74 @@
+/* A shadow map on ground that is drawn by levels of detail, against rays at the full surface. */
+#include "shadow_rig.h"
+
+#include "testing.h"
+
+#include <stdio.h>
+
+/* Steep on every scale: each level is another surface. */
+static float rough(float x, float z)
+{
+    return 3 * cosf(9 * x) * cosf(7 * z) + 0.5f * cosf(31 * x + 1) * cosf(37 * z) - 6;
+}
+
+static struct rig *rig_of(struct arena *arena, float detail_px)
+{
+    struct rig *rig = rig_open(ring(arena, 12, 8), arena, rough);
+    rig->scene->terrain.detail_px = detail_px;
+    rig_look(rig, (float[3]){5, 10, 39}, (float[3]){0, -5, 0}, (float[3]){1, 0.35f, 0.3f});
+    return rig;
+}
+
+/* Off the edges nothing is wrong that every triangle would have right: what casts is what is drawn,
+ * and does not shade itself. */
+static void test_shadow_levels__shadows_are_as_right_as_on_every_triangle(void **unused)
+{
+    static const char *const options[] = {"samples=1,size=1024", "samples=16,size=1024"};
+    for (int o = 0; o < 2; o++) {
+        int off[2], edge[2];
+        for (int d = 0; d < 2; d++) {
+            struct arena *arena = arena_create(0);
+            struct rig *rig = rig_of(arena, (float)d);
+            off[d] = wrong_pixels(rig, "shadow-map", options[o], &edge[d]);
+            embree_destroy(rig->embree);
+            arena_destroy(arena);
+        }
+        printf("# %s, wrong of %d pixels off the edges and in all: every triangle %d %d, moved by "
+               "a pixel %d %d\n",
+               options[o], WIDTH * HEIGHT, off[0], edge[0], off[1], edge[1]);
+        assert_true(off[1] <= off[0] + 40);
+    }
+    (void)unused;
+}
+
+/* The same picture whether or not the eye was elsewhere before: a map goes with the levels. */
+static void test_shadow_levels__a_map_follows_the_levels_of_the_view(void **unused)
+{
+    struct arena *arena = arena_create(0);
+    struct rig *rig = rig_of(arena, 1);
+    struct view before = rig->view; /* the same map, from elsewhere: other levels */
+    struct setting setting = {.method = "shadow-map",
+                              .options = "samples=1,size=1024",
+                              .backend = "osmesa",
+                              .effects = EFFECT_SUN_SHADOWS,
+                              .format = TARGET_RGBA32F,
+                              .masked = true};
+    struct picture at_once = picture_draw(arena, rig->scene, &rig->view, &setting);
+    view_look_at(rig->scene, (float[3]){-35, 60, -60}, (float[3]){0, -5, 0}, &before);
+    memcpy(before.sun_direction, rig->view.sun_direction, sizeof before.sun_direction);
+    setting.before = &before;
+    struct picture later = picture_draw(arena, rig->scene, &rig->view, &setting);
+    assert_memory_equal(at_once.rgba, later.rgba, 4 * WIDTH * HEIGHT * sizeof(float));
+    embree_destroy(rig->embree);
+    arena_destroy(arena);
+    (void)unused;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_shadow_levels__shadows_are_as_right_as_on_every_triangle),
+        cmocka_unit_test(test_shadow_levels__a_map_follows_the_levels_of_the_view),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
