@@ -99,22 +99,19 @@ static void tile_begin(struct cone_canvas *canvas, size_t tile)
     backdrop_cpu_tile(canvas->backdrop, &part);
 }
 
-/* The farthest that a pixel's relief is within a pixel of it; at an edge, as it is. */
+/* The farthest that a pixel's relief is within a pixel of it along each axis; at an edge, as it
+ * is. */
 static float limit_of(const struct cone_canvas *canvas, int x, int y)
 {
-    const int right = x + 1 < canvas->width_px ? x + 1 : x, left = x > 0 ? x - 1 : x;
-    const int bottom = y + 1 < canvas->height_px ? y + 1 : y, top = y > 0 ? y - 1 : y;
-    const float *rows[3];
-    for (int k = 0; k < 3; k++)
-        rows[k] = canvas->front_m + (size_t)(k == 0   ? top
-                                             : k == 1 ? y
-                                                      : bottom) *
-                                        (size_t)canvas->width_px;
-    if (canvas->fine && is_edge(canvas, x, y))
-        return rows[1][x];
-    float far_m = 0;
-    for (int k = 0; k < 3; k++)
-        far_m = fmaxf(far_m, fmaxf(fmaxf(rows[k][left], rows[k][x]), rows[k][right]));
+    const size_t width = (size_t)canvas->width_px;
+    const float *at = canvas->front_m + (size_t)y * width + (size_t)x;
+    if (is_edge(canvas, x, y))
+        return *at;
+    float far_m = *at;
+    if (x > 0 && x + 1 < canvas->width_px)
+        far_m = fmaxf(far_m, fmaxf(at[-1], at[1]));
+    if (y > 0 && y + 1 < canvas->height_px)
+        far_m = fmaxf(far_m, fmaxf(at[-(ptrdiff_t)width], at[width]));
     return far_m;
 }
 
