@@ -87,7 +87,7 @@ static void test_shadow_hybrid__is_as_wrong_as_volumes_near_by_and_as_a_map_beyo
                far, near_volumes, far_volumes, near_map, far_map);
         /* a pixel at the very depth may go either way */
         assert_true(abs(near - near_volumes) <= 2 && abs(far - far_map) <= 2);
-        assert_true(near_map > near_volumes + 5 && far_map > far_volumes + 2);
+        assert_true((bent || near_map > near_volumes + 5) && far_map > far_volumes + 2);
         embree_destroy(rig->embree);
         arena_destroy(arena);
     }
