@@ -37,18 +37,18 @@ struct lanes_rays {
 };
 
 struct lanes_march {
-    const struct march_job *job;
-    const struct march_rect *rect;
-    struct march_rays *rays;
     /* The job's, in all lanes. leap: along no ray a voxel's side is shorter. */
     lanes eye[3], most[3], step_m, first_m, leap_m; /* first: a step from empty space on */
     lanes_int size[2];
+    struct lanes_rays on[SETS];
+    const struct march_job *job;
+    const struct march_rect *rect;
+    struct march_rays *rays;
+    void (*take)(struct lanes_march *march, int sets); /* the first sets of LANES voxels of met */
     float row_per_key;
     int closed;
-    void (*take)(struct lanes_march *march, int sets); /* the first sets of LANES voxels of met */
     struct lanes_fresh fresh;
     struct lanes_met met;
-    struct lanes_rays on[SETS];
 };
 
 static inline lanes_int lanes_numbers(void)

@@ -226,7 +226,9 @@ static void sweep_run(const struct sweep *sweep)
     struct arena *passing = arena_create(0);
     struct hull line = hull_room(passing, sweep), hull = hull_room(passing, sweep);
     double lean = sweep->slope * (sweep->along - 1);
-    for (double first = floor(fmin(0, -lean)) - 1; first <= sweep->across + fmax(0, -lean); first++)
+    const int from = (int)floor(fmin(0, -lean)) - 1;
+    const int to = (int)floor(sweep->across + fmax(0, -lean));
+    for (int first = from; first <= to; first++)
         sweep_line(sweep, first, &line, &hull);
     for (int column = 0; column < sweep->along; column++)
         for (int row = 0; row < sweep->across; row++)
