@@ -14,7 +14,7 @@ struct options {
 /* clang-format off */
 static const struct option option_table[] = {
     OPTION(struct options, near_m, 0, 0, 1000000, "m",
-        "shadows are the volumes' to this depth, the map's beyond; 0: where a texel of the map is texel_px"),
+        "shadows are the volumes' to this depth, the map's beyond; 0: where its texels get as small as texel_px"),
     OPTION(struct options, texel_px, 1, 0.01, 1000, "px",
         "near_m=0: how large a texel of the map may be where the map begins, across the light"),
     OPTION(struct options, blend, 0.2, 0, 1, "",

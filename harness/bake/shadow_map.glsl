@@ -100,12 +100,12 @@ float shadow_filtered(int cascade, vec3 at, ShadowFilter f)
 
 // Where a pixel reaches over more texels than the filter, taps stand all over the pixel, each at its own depth, two
 // texels apart or, in large pixels, farther, since texels that no tap looks at make a finer map worse than a coarse
-// one. right, down: a pixel's, m; of a surface that is seen along itself eight times the other at most.
+// one. right, down: a pixel's, m; of a surface that is seen along itself three times the other at most.
 ShadowFilter shadow_spread(int cascade, vec3 position_m, vec3 right_m, vec3 down_m, ShadowFilter f)
 {
     const float least = float(2 * RADIUS + 1), most = max(least, 8.0);
     vec2 along_m = vec2(length(right_m), length(down_m));
-    vec2 kept = min(vec2(1.0), 8.0 * along_m.yx / max(along_m, 1e-20));
+    vec2 kept = min(vec2(1.0), 3.0 * along_m.yx / max(along_m, 1e-20));
     vec3 at = shadow_place(cascade, position_m);
     mat2x3 pixel = mat2x3(shadow_place(cascade, position_m + kept.x * right_m) - at,
                           shadow_place(cascade, position_m + kept.y * down_m) - at);

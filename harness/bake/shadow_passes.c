@@ -126,15 +126,18 @@ static void share_with_map(struct shadow_passes *passes, float deep_m, bool lit)
                                                 deep_m > 0 ? deep_m : 1e-30f, lit});
 }
 
-/* Surfaces out of the sun, but for what the map says, then the volumes' count. */
+/* Surfaces out of the sun, but for what the map says, then the volumes' count: a little beyond
+ * their depth, which the middle of a pixel's triangle may be before and its samples behind. */
 static void draw_volumes(struct workspace *workspace, struct shadow_passes *passes,
                          const struct view *view, float deep_m)
 {
+    static const float beyond = 1.25f;
+    shadow_volume_extrude(workspace, passes->volume, view, beyond * deep_m);
     struct view dark = *view; /* N.L is 0 */
     dark.sun_direction[0] = dark.sun_direction[1] = dark.sun_direction[2] = 0;
     share_with_map(passes, deep_m, false);
     draw_surfaces(workspace, passes, passes->map ? view : &dark);
-    shadow_volume_count(workspace, passes->volume, view, deep_m);
+    shadow_volume_count(workspace, passes->volume, view, beyond * deep_m);
 }
 
 enum status shadow_passes_draw(struct workspace *workspace, void *state, const struct view *view,
@@ -149,7 +152,6 @@ enum status shadow_passes_draw(struct workspace *workspace, void *state, const s
         return status;
     const float deep_m = depth_of_volumes(passes, view);
     if (deep_m > 0) {
-        shadow_volume_extrude(workspace, passes->volume, view, deep_m);
         shadow_volume_view(&lit);
         draw_volumes(workspace, passes, &lit, deep_m);
     }

@@ -150,7 +150,7 @@ static void masks_numbers(struct masks *masks)
                     plot_number(&masks->plot, wrong_percent(masks, at),
                                 cost_ms(masks, at, COLUMN_frame_seconds), ++number);
             }
-    fputs("set key font \",10\" spacing 1.1 maxcols 2\n", masks->plot.gp);
+    fputs("set key font \",10\" spacing 1.1 maxcols 1\n", masks->plot.gp);
 }
 
 /* Percent, smallest and largest over the views, ms, low, high: filled on the front. */
@@ -193,8 +193,6 @@ enum status plot_masks(const struct book *book, const struct group *group, const
     for (size_t m = 0; m < book->methods_count; m++)
         for (step = 0; next_row(&masks, m, &step, &row);)
             masks_point(&masks, &book->rows[group->rows[row]], masks.on_front[row]);
-    plot->columns = 2;
-    plot->key_rows = (plot->key_rows + 1) / 2;
     return plot_close(plot, figure, error);
 }
 
