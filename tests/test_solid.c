@@ -75,7 +75,11 @@ static void test_needles__are_lit_on_their_outside_alone_by_every_method(void **
     for (size_t k = 0; k < sizeof subjects / sizeof *subjects; k++) {
         const struct subject *s = &subjects[k];
         struct view view = tree_view(scene, 0, 0.1f, 300, s->span_m);
-        struct setting setting = {s->name, s->options, NULL, lit, LOD_AUTO, TARGET_RGBA32F};
+        struct setting setting = {.method = s->name,
+                                  .options = s->options,
+                                  .effects = lit,
+                                  .lod = LOD_AUTO,
+                                  .format = TARGET_RGBA32F};
         struct picture picture = picture_draw(arena, scene, &view, &setting);
         struct frame frame = {
             .width_px = view.width_px, .height_px = view.height_px, .rgba = picture.rgba};
