@@ -6,7 +6,8 @@
 
 /* Writes FOLDER/shaders.{dat,gp,png}. shaders.dat has a block for each density: angles of eye and
  * needles to the twig in degrees, opacity, brightness and shine by converged quadrature, and all
- * three by the exact form and by the paper's. STATUS_UNAVAILABLE without gnuplot, after the other two. */
+ * three by the exact form and by the paper's. STATUS_UNAVAILABLE without gnuplot, after the other
+ * two. */
 enum status shaders_draw(const char *folder, struct error *error);
 
 #endif
