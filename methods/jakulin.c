@@ -11,6 +11,7 @@ struct options {
     int directions, above, slices, resolution, order, cut, samples;
     float criterion, texel, error_px, near;
     bool oblique, smooth;
+    struct shadow_choice sun;
 };
 
 /* clang-format off */
@@ -38,6 +39,7 @@ static const struct option table[] = {
            "slices seen at a slant hide as much as the longer way through them"),
     OPTION(struct options, smooth, 0, 0, 1, "",
            "numbers of slices change gradually, and trees turn into their triangles so"),
+    SHADOW_CHOICE_OPTIONS(struct options, sun),
     OPTION_END,
 };
 /* clang-format on */
@@ -49,6 +51,11 @@ struct state {
     struct triangles *trunks;
     struct cull *cull; /* of the trunks */
 };
+
+static unsigned effects(const void *values)
+{
+    return shadow_choice_effects(&((const struct options *)values)->sun);
+}
 
 /* Bark parts come first in a mesh. */
 static enum status bark_of(struct workspace *workspace, struct plant *plant, struct plant **bark)
@@ -77,7 +84,8 @@ static enum status prepare_trunks(struct workspace *workspace, const struct scen
         .tolerance_px = triangles_tolerance_px(options->error_px, workspace->lod),
         .smooth = true,
         .contrast = true,
-        .sift = true};
+        .sift = true,
+        .shadows = sun_shadows_map(state->foliage->shadows)};
     struct scene *trunks = ARENA_NEW(workspace->arena, struct scene);
     enum status status = STATUS_OK;
     *trunks = *scene;
@@ -124,6 +132,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
         .smooth = options->smooth,
         .mix = options->order ? STACK_CROSSED : STACK_MIXED,
         .above = options->above,
+        .sun = options->sun,
         .criterion_px = options->criterion,
         .texel_px = options->texel,
     };
@@ -136,7 +145,9 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
 {
     static const struct sampling_places middle = {1, {{0.5f, 0.5f}}};
     struct state *state = own;
-    stack_backdrop(workspace, state->foliage, view, target);
+    enum status status = stack_backdrop(workspace, state->foliage, view, target);
+    if (status != STATUS_OK)
+        return status;
     struct cull_list list = cull_view(state->cull, view, triangles_order(state->trunks));
     struct triangles_frame frame = {
         .view = view, .drawn = view, .places = &middle, .cull = state->cull};
@@ -151,9 +162,11 @@ const struct method jakulin_method = {
     .summary = "the trunk as polygons, the foliage as slices of two directions mixed by angle",
     .source = "Jakulin, Interactive Vegetation Rendering with Slicing and Blending, Eurographics "
               "2000, short presentations; Senegas, DEA IVR, INPG, 2001, 3.1",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG | TRAIT_STOCHASTIC,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG |
+              TRAIT_STOCHASTIC | TRAIT_MASK,
     .options = table,
     .options_size = sizeof(struct options),
+    .effects = effects,
     .prepare = prepare,
     .draw = draw,
 };

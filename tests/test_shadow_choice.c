@@ -80,6 +80,7 @@ static void test_shadow_choice__each_method_is_shaded_as_traced(void **state)
         {"cross-quads", "resolution=64", 0.045, 0.3},
         {"texels", "resolution=32,slices=16", 0.035, 0.155},
         {"shaded-texels", "resolution=32,slices=16", 0.035, 0.13},
+        {"jakulin", "resolution=32,slices=16", 0.035, 0.13},
     };
     struct arena *arena = arena_create(0);
     struct error error = {0};

@@ -235,12 +235,18 @@ static void draw_batch(struct workspace *workspace, const struct stack *stack, s
     }
 }
 
-void stack_backdrop(struct workspace *workspace, struct stack *stack, const struct view *view,
-                    struct target *target)
+enum status stack_backdrop(struct workspace *workspace, struct stack *stack,
+                           const struct view *view, struct target *target)
 {
+    enum status status = stack_relight(workspace, stack, view->sun_direction);
+    if (status == STATUS_OK)
+        status = sun_shadows_update(workspace, stack->shadows, view, NULL);
+    if (status != STATUS_OK)
+        return status;
     workspace->gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     backdrop_draw(workspace, stack->backdrop, view);
     workspace->gl->Flush(); /* a software GL fills it while the trees are culled and sorted */
+    return STATUS_OK;
 }
 
 /* Trees [first, end) of a list in its order. */
@@ -321,11 +327,6 @@ enum status stack_trees(struct workspace *workspace, struct stack *stack, const 
 enum status stack_draw(struct workspace *workspace, struct stack *stack, const struct view *view,
                        struct target *target)
 {
-    enum status status = stack_relight(workspace, stack, view->sun_direction);
-    if (status == STATUS_OK)
-        status = sun_shadows_update(workspace, stack->shadows, view, NULL);
-    if (status != STATUS_OK)
-        return status;
-    stack_backdrop(workspace, stack, view, target);
-    return stack_trees(workspace, stack, view, target);
+    enum status status = stack_backdrop(workspace, stack, view, target);
+    return status == STATUS_OK ? stack_trees(workspace, stack, view, target) : status;
 }

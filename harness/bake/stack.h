@@ -123,9 +123,10 @@ struct stack {
 enum status stack_prepare(struct workspace *workspace, const struct scene *scene,
                           const struct stack_request *request, struct stack **stack);
 
-/* Binds the target and draws the backdrop; a method may add what is opaque before the forest. */
-void stack_backdrop(struct workspace *workspace, struct stack *stack, const struct view *view,
-                    struct target *target);
+/* Light and shadows for the view's sun, then the target bound and the backdrop in it; a method may
+ * add what is opaque before the forest. */
+enum status stack_backdrop(struct workspace *workspace, struct stack *stack,
+                           const struct view *view, struct target *target);
 /* The forest into the target, which is bound. */
 enum status stack_trees(struct workspace *workspace, struct stack *stack, const struct view *view,
                         const struct target *target);
