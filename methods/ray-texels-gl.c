@@ -3,6 +3,7 @@
  * seen: hidden trees cost nothing, and the target is blended once. */
 #include "bake/backdrop.h"
 #include "bake/cull.h"
+#include "bake/march_free.h"
 #include "bake/march_tree.h"
 #include "bake/tally.h"
 #include "bake/trees_gl.h"
@@ -78,12 +79,11 @@ static enum status make_program(struct workspace *workspace, const struct state 
                                 GLuint *program)
 {
     struct arena *scratch = arena_create(0);
-    const char *defines =
-        arena_printf(scratch, "EMPTY %uu\nPROBES 2\nBIAS %d\nSOLID %g\n%s%s%s%s",
-                     (unsigned)VOXELS_GL_EMPTY, TREE_TEXELS_BIAS, (double)march_solid,
-                     scene_is_stretched(state->scene) ? "STRETCHED 1\n" : "",
-                     state->options.smooth > 0 ? "SMOOTH 1\n" : "",
-                     state->options.model ? "ISOTROPIC 1\n" : "", counts ? "COUNT 1\n" : "");
+    const char *defines = arena_printf(
+        scratch, "FULL %uu\nPROBES 2\nBIAS %d\nSOLID %g\n%s%s%s%s", MARCH_FULL, TREE_TEXELS_BIAS,
+        (double)march_solid, scene_is_stretched(state->scene) ? "STRETCHED 1\n" : "",
+        state->options.smooth > 0 ? "SMOOTH 1\n" : "", state->options.model ? "ISOTROPIC 1\n" : "",
+        counts ? "COUNT 1\n" : "");
     enum status status = gl_program(workspace->gl, "ray-texels-gl", ray_texels_gl_glsl, defines,
                                     program, workspace->error);
     arena_destroy(scratch);

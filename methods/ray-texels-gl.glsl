@@ -193,23 +193,23 @@ void main()
         float before = left, stride = short_step;  // from empty space on no voxel is jumped over
         do {
             // Through empty space.
-            uint cell = EMPTY;
+            uint cell = 0u;
             float pace = 0.0;
             for (int probe = 0; probe < PROBES; probe++) {
                 pace = clamp(span - along, 0.0, stride);
                 float middle = along + 0.5 * pace;
                 ivec3 p = ivec3(clamp(start + middle * u, vec3(0.0), most));
 #ifdef COUNT
-                lookups += pace > 0.0 && cell >= EMPTY ? 1u : 0u;  // else it finds the same again
+                lookups += pace > 0.0 && cell < FULL ? 1u : 0u;  // else it finds the same again
 #endif
                 cell = texelFetch(cells, int(looks.x) + (p.z * grid.y + p.y) * grid.x + p.x).r;
-                if (cell >= EMPTY) {
-                    along = max(along + stride, middle + (float(int(cell >> octant & 15u)) - 1.0) * leap);
+                if (cell < FULL) {
+                    along = max(along + stride, middle + float(int(cell >> octant & 15u)) * leap);
                     stride = short_step;
                 }
             }
-            bool empty = cell >= EMPTY;
-            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell)),
+            bool empty = cell < FULL;
+            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell & ~FULL)),
                                     empty ? 0.0 : drawn * thick * pace, f_eye,
                                     f_sun, f_both, rise * rise - 1.0, in_shade, in_sun, sides);
 #ifdef COUNT

@@ -1,5 +1,4 @@
-/* Voxels as shaders march through them: distances by octants and outlines on the screen, both
- * against brute force. */
+/* Voxels as shaders march through them: outlines on the screen, against brute force. */
 #include "testing.h"
 
 #include "bake/voxels_gl.h"
@@ -28,48 +27,6 @@ static int place_of(const struct voxels_level *level, size_t at, int place[3])
     place[1] = (int)(at / level->size[0] % level->size[1]);
     place[2] = (int)(at / level->size[0] / level->size[1]);
     return level->cells[at] >= VOXELS_FIRST;
-}
-
-/* The Chebyshev distance to the nearest cell of an octant that is not empty, 15 at most. */
-static int nearest(const struct voxels_level *level, size_t count, const int from[3], int octant)
-{
-    int least = 15;
-    for (size_t at = 0; at < count; at++) {
-        int place[3], far = 0;
-        bool within = place_of(level, at, place);
-        for (int i = 0; i < 3; i++) {
-            int way = octant >> i & 1 ? from[i] - place[i] : place[i] - from[i];
-            within = within && way >= 0;
-            far = way > far ? way : far;
-        }
-        least = within && far < least ? far : least;
-    }
-    return least;
-}
-
-static void test_voxels_gl__cells_tell_how_far_each_octant_is_empty(void **state)
-{
-    (void)state;
-    struct arena *arena = arena_create(0);
-    struct random random = random_seed(1, 1);
-    for (int round = 0; round < 12; round++) {
-        struct voxels_level level = grid(arena, &random, round < 10 ? 7 : 20, round < 10 ? 9 : 900);
-        size_t count = (size_t)level.size[0] * level.size[1] * level.size[2];
-        uint32_t *cells = ARENA_ARRAY(arena, uint32_t, count);
-        voxels_gl_cells(&level, 1000, cells);
-        for (size_t at = 0; at < count; at++) {
-            int place[3];
-            if (place_of(&level, at, place)) {
-                assert_int_equal(cells[at], 1000 + at);
-                continue;
-            }
-            assert_true(cells[at] >= VOXELS_GL_EMPTY);
-            for (int octant = 0; octant < 8; octant++)
-                assert_int_equal(cells[at] >> 4 * octant & 15,
-                                 nearest(&level, count, place, octant));
-        }
-    }
-    arena_destroy(arena);
 }
 
 /* A camera anywhere around a grid that looks at its middle. */
@@ -172,7 +129,6 @@ static void test_silhouette__holds_every_voxel_and_little_more(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_voxels_gl__cells_tell_how_far_each_octant_is_empty),
         cmocka_unit_test(test_silhouette__holds_every_voxel_and_little_more),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
