@@ -22,7 +22,7 @@ static const struct option option_table[] = {
     OPTION(struct options, size, 2048, 256, 8192, "", "texels along a side of a map"),
     OPTION(struct options, cascades, 1, 1, 4, "", "maps, one behind the other along the view"),
     OPTION_WORD(struct options, casters, 1, SHADOW_CASTERS_WORDS, SHADOW_CASTERS_DOC),
-    SAMPLING_OPTION(struct options, 1),
+    SAMPLING_OPTION(struct options, 0),
     SHADOW_PASSES_TRIANGLES(struct options),
     OPTION_END,
 };
