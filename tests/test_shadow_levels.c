@@ -15,7 +15,7 @@ static struct rig *rig_of(struct arena *arena, float detail_px)
 {
     struct rig *rig = rig_open(ring(arena, 12, 8), arena, soft);
     rig->scene->terrain.detail_px = detail_px;
-    rig_look(rig, (float[3]){5, 10, 39}, (float[3]){0, -5, 0}, (float[3]){1, 0.2f, 0.3f});
+    rig_look(rig, (float[3]){5, 30, 100}, (float[3]){0, -4, 0}, (float[3]){1, 0.2f, 0.3f});
     return rig;
 }
 
