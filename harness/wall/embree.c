@@ -141,7 +141,7 @@ static void add_part(struct embree *embree, RTCScene scene, const struct embree_
 }
 
 /* Triangles above which a mesh is kept in less memory and met more slowly: a terrain of 8192 x 8192
- * quads has 134 million. */
+ * quads has 134 million, whose reference takes 11 GB in place of 19. */
 enum { COMPACT_FROM = 1 << 24 };
 
 static struct mesh_scene *scene_begin(struct embree *embree, size_t triangles)
