@@ -3,6 +3,7 @@
 #ifndef TREELINE_TESTS_SHADOW_RIG_H
 #define TREELINE_TESTS_SHADOW_RIG_H
 
+#include "loose_mesh.h"
 #include "pictures.h"
 
 #include "wall/embree.h"
@@ -21,79 +22,24 @@ struct rig {
     struct error error;
 };
 
-static inline struct mesh *mesh_make(struct arena *arena, enum material_kind kind, size_t room)
-{
-    struct mesh *mesh = ARENA_NEW(arena, struct mesh);
-    mesh->positions = arena_alloc(arena, 3 * room, sizeof *mesh->positions);
-    mesh->normals = arena_alloc(arena, 3 * room, sizeof *mesh->normals);
-    mesh->triangles = arena_alloc(arena, room, sizeof *mesh->triangles);
-    mesh->parts_count = mesh->materials_count = 1;
-    mesh->parts = ARENA_NEW(arena, struct mesh_part);
-    mesh->materials = ARENA_NEW(arena, struct material);
-    *mesh->materials =
-        (struct material){.name = "test", .kind = kind, .albedo = {0.5f, 0.5f, 0.5f}};
-    return mesh;
-}
-
-static inline void add_triangle(struct mesh *mesh, const float a[3], const float b[3],
-                                const float c[3])
-{
-    const float *corners[3] = {a, b, c};
-    float u[3], v[3], n[3], square = 0;
-    for (int i = 0; i < 3; i++) {
-        u[i] = b[i] - a[i];
-        v[i] = c[i] - a[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-        square += n[i] * n[i];
-    }
-    for (uint32_t k = 0; k < 3; k++) {
-        size_t at = mesh->vertices_count++;
-        memcpy(mesh->positions[at], corners[k], 3 * sizeof(float));
-        for (int i = 0; i < 3; i++)
-            mesh->normals[at][i] = n[i] / sqrtf(square);
-        mesh->triangles[mesh->triangles_count][k] = (uint32_t)at;
-    }
-    mesh->triangles_count++;
-}
-
-static inline struct mesh *mesh_done(struct arena *arena, struct mesh *mesh)
-{
-    struct mesh_part *part = mesh->parts;
-    struct error error;
-    part->triangles_count = (uint32_t)mesh->triangles_count;
-    if (mesh->materials->kind == MATERIAL_LEAF) {
-        part->elements_count = part->triangles_count;
-        part->element_first = ARENA_ARRAY(arena, uint32_t, part->elements_count + 1);
-        for (uint32_t i = 0; i <= part->elements_count; i++)
-            part->element_first[i] = i;
-    }
-    mesh_bounds(mesh);
-    if (mesh_check(mesh, &error) != STATUS_OK)
-        fail_msg("%s", error.text);
-    return mesh;
-}
-
 /* Closed, with a hole and sides that shade each other: radii 2 m and 0.7 m, upright, 3 m high. */
 static inline struct mesh *ring(struct arena *arena, int around, int along)
 {
-    struct mesh *mesh = mesh_make(arena, MATERIAL_BARK, 2 * (size_t)(around * along));
+    struct mesh *mesh = mesh_new(arena, MATERIAL_BARK, 0.5f, 2 * (size_t)(around * along));
     for (int i = 0; i < around; i++)
         for (int j = 0; j < along; j++) {
-            float corner[4][3];
+            double corner[4][3];
             for (int k = 0; k < 4; k++) {
                 double a = 2 * M_PI * ((i + (k & 1)) % around) / around;
                 double b = 2 * M_PI * ((j + k / 2) % along) / along;
                 double out = 2 + 0.7 * cos(b);
-                corner[k][0] = (float)(out * cos(a));
-                corner[k][1] = (float)(3 + out * sin(a));
-                corner[k][2] = (float)(0.7 * sin(b));
+                corner[k][0] = out * cos(a);
+                corner[k][1] = 3 + out * sin(a);
+                corner[k][2] = 0.7 * sin(b);
             }
-            add_triangle(mesh, corner[0], corner[1], corner[3]);
-            add_triangle(mesh, corner[0], corner[3], corner[2]);
+            mesh_quad(mesh, corner[0], corner[1], corner[3], corner[2]);
         }
-    return mesh_done(arena, mesh);
+    return mesh_finish(arena, mesh);
 }
 
 static inline void add_to_embree(struct rig *rig, const struct mesh *mesh,

@@ -1,5 +1,4 @@
-/* What tests of shadows share: level ground, masks of a cell's views, how far pictures are apart.
- */
+/* What tests of shadows share: masks of a cell's views, how far pictures are apart. */
 #ifndef TREELINE_TESTS_SHADOW_WORLD_H
 #define TREELINE_TESTS_SHADOW_WORLD_H
 
@@ -9,19 +8,6 @@
 #include "truth/frame.h"
 
 #include <math.h>
-
-/* 200 m of level grey ground. */
-static inline void ground_level(struct arena *arena, struct terrain *terrain)
-{
-    terrain->samples_x = terrain->samples_z = 2;
-    terrain->size_x_m = terrain->size_z_m = 200;
-    terrain->heights_m = ARENA_ARRAY(arena, float, 4);
-    terrain->normals = arena_alloc(arena, 4, sizeof *terrain->normals);
-    for (int i = 0; i < 4; i++)
-        terrain->normals[i][1] = 1;
-    for (int i = 0; i < 3; i++)
-        terrain->albedo[i] = 0.4f;
-}
 
 /* RMS difference of two pictures, over 8 x 8 pixels. */
 static inline double boxes_apart(const struct frame *a, const struct frame *b)

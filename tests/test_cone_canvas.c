@@ -23,7 +23,7 @@ static struct world ridge(int fine, bool trees, bool hill)
     }
     if (trees)
         plant_add(&world, plant_of(world.arena, twigs, COUNT));
-    world_ground(&world, 8, 0.4f);
+    world.scene.terrain = level_ground(world.arena, 8, 0.4f);
     terrain->samples_z = 5;
     terrain->heights_m = ARENA_ARRAY(world.arena, float, 10);
     terrain->normals = arena_alloc(world.arena, 10, sizeof *terrain->normals);

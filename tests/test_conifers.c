@@ -247,7 +247,7 @@ static void test_conifers__the_fast_way_draws_what_the_straightforward_one_does(
         scene->instances[scene->instances_count++] =
             (struct instance){{0.4f, 0.1f, -2}, 1, 1.3f, 0, 1};
         scene->fog = (struct fog){{0.2f, 0.3f, 0.4f}, 0.02f};
-        world_ground(&world, 30, 0.4f);
+        world.scene.terrain = level_ground(world.arena, 30, 0.4f);
         scene->ambient[0] = scene->ambient[1] = scene->ambient[2] = 0.3f;
         world_look(&world, 0, 1, level == CONE_NEEDLE ? 2.0f : 3.5f, 0, 0.4f, 0);
         world_sun(&world, 0.5, 0.7, 0.3);
@@ -277,7 +277,7 @@ static void test_conifers__what_relief_hides_is_left_out_without_a_trace(void **
     plant_add(&world, bush(world.arena));
     scene->instances[scene->instances_count++] = (struct instance){{0.4f, 0, -1}, 1, 1.3f, 0, 1};
     scene->instances[scene->instances_count++] = (struct instance){{-0.5f, -1.2f, -3}, 2, 1, 0, 1};
-    world_ground(&world, 8, 0.4f);
+    world.scene.terrain = level_ground(world.arena, 8, 0.4f);
     terrain->samples_z = 5;
     terrain->heights_m = ARENA_ARRAY(world.arena, float, 10);
     terrain->normals = arena_alloc(world.arena, 10, sizeof *terrain->normals);

@@ -1,4 +1,5 @@
 /* Levels of detail against every triangle, and what they are made from against closed forms. */
+#include "loose_mesh.h"
 #include "pictures.h"
 
 #include "bake/cover.h"
@@ -8,47 +9,21 @@
 
 enum { WIDTH = 128, HEIGHT = 96 };
 
-/* One part of unconnected triangles, or of tubes of `sides` quads around the vertical. */
-static struct mesh *new_mesh(struct arena *arena, size_t triangles, enum material_kind kind)
-{
-    struct mesh *mesh = ARENA_NEW(arena, struct mesh);
-    mesh->positions = arena_alloc(arena, 3 * triangles, sizeof *mesh->positions);
-    mesh->normals = arena_alloc(arena, 3 * triangles, sizeof *mesh->normals);
-    mesh->triangles = arena_alloc(arena, triangles, sizeof *mesh->triangles);
-    mesh->parts = ARENA_NEW(arena, struct mesh_part);
-    mesh->materials = ARENA_NEW(arena, struct material);
-    mesh->materials[0] = (struct material){"it", kind, {0.5f, 0.5f, 0.5f}, NULL, false};
-    mesh->parts_count = mesh->materials_count = 1;
-    return mesh;
-}
-
-static void add_triangle(struct mesh *mesh, const float a[3], const float b[3], const float c[3])
-{
-    const float *corners[3] = {a, b, c};
-    for (uint32_t i = 0; i < 3; i++) {
-        memcpy(mesh->positions[mesh->vertices_count], corners[i], 3 * sizeof(float));
-        mesh->normals[mesh->vertices_count][1] = 1;
-        mesh->triangles[mesh->triangles_count][i] = (uint32_t)mesh->vertices_count++;
-    }
-    mesh->parts[0].triangles_count = (uint32_t)++mesh->triangles_count;
-}
-
+/* A tube of quads around the vertical; its sides are one piece. */
 static void add_tube(struct mesh *mesh, float x_m, float radius_m, float length_m)
 {
     enum { SIDES = 24 };
     for (int side = 0; side < SIDES; side++) {
-        float p[2][2][3];
+        double p[2][2][3];
         for (int end = 0; end < 2; end++)
             for (int top = 0; top < 2; top++) {
-                /* the same number gives the same corner, so that sides are one piece */
-                float turn = 6.2831853f / SIDES * (float)((side + end) % SIDES);
-                memcpy(p[end][top],
-                       (float[3]){x_m + radius_m * cosf(turn), top ? length_m : 0,
-                                  radius_m * sinf(turn)},
-                       sizeof p[end][top]);
+                /* the same number gives the same corner */
+                double turn = 2 * M_PI / SIDES * ((side + end) % SIDES);
+                p[end][top][0] = x_m + radius_m * cos(turn);
+                p[end][top][1] = top ? length_m : 0;
+                p[end][top][2] = radius_m * sin(turn);
             }
-        add_triangle(mesh, p[0][0], p[1][0], p[1][1]);
-        add_triangle(mesh, p[0][0], p[1][1], p[0][1]);
+        mesh_quad(mesh, p[0][0], p[1][0], p[1][1], p[0][1]);
     }
 }
 
@@ -56,11 +31,11 @@ static void test_levels__a_tube_is_as_wide_as_it_is(void **state)
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    struct mesh *mesh = new_mesh(arena, 3 * 48, MATERIAL_BARK);
+    struct mesh *mesh = mesh_new(arena, MATERIAL_BARK, 0.5f, 3 * 48);
     static const float radii_m[3] = {0.05f, 0.4f, 0.2f};
     for (int i = 0; i < 3; i++)
         add_tube(mesh, 5 * (float)i, radii_m[i], 20);
-    mesh_bounds(mesh);
+    mesh_finish(arena, mesh);
     const uint16_t *widths = stout_widths(arena, mesh);
     for (size_t i = 0; i < mesh->vertices_count; i++) {
         double width_m = widths[i] / 16384.0, exact = 2 * (double)radii_m[i / 144];
@@ -79,16 +54,11 @@ static void test_levels__the_cover_of_boards_is_their_projected_area(void **stat
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    struct mesh *mesh = new_mesh(arena, 4, MATERIAL_LEAF);
-    static const float a[3] = {-1, 3, -1}, b[3] = {1, 3, -1}, c[3] = {1, 3, 1}, d[3] = {-1, 3, 1};
-    for (int twice = 0; twice < 2; twice++) { /* one board behind the other covers no more */
-        add_triangle(mesh, a, b, c);
-        add_triangle(mesh, a, c, d);
-    }
-    static uint32_t first[5] = {0, 1, 2, 3, 4};
-    mesh->parts[0].element_first = first;
-    mesh->parts[0].elements_count = 4;
-    mesh_bounds(mesh);
+    struct mesh *mesh = mesh_new(arena, MATERIAL_LEAF, 0.5f, 4);
+    static const double a[3] = {-1, 3, -1}, b[3] = {1, 3, -1}, c[3] = {1, 3, 1}, d[3] = {-1, 3, 1};
+    for (int twice = 0; twice < 2; twice++) /* one board behind the other covers no more */
+        mesh_quad(mesh, a, b, c, d);
+    mesh_finish(arena, mesh);
     const struct detail *detail = detail_create(arena, mesh, true);
     struct cover *cover = cover_create(arena, mesh, detail);
     cover_look(cover, 0.35f, 0);
@@ -150,19 +120,16 @@ static void test_levels__a_nearer_tree_never_has_fewer_elements(void **state)
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    struct mesh *mesh = new_mesh(arena, 5000, MATERIAL_LEAF);
+    struct mesh *mesh = mesh_new(arena, MATERIAL_LEAF, 0.5f, 5000);
     struct random random = random_seed(4, 4);
-    mesh->parts[0].element_first = ARENA_ARRAY(arena, uint32_t, 5001);
-    mesh->parts[0].elements_count = 5000;
     for (uint32_t i = 0; i < 5000; i++) {
-        float p[3][3];
+        double p[3][3];
         for (int k = 0; k < 9; k++)
             p[k / 3][k % 3] =
-                (k < 3 ? 4 * random_float(&random) : p[0][k % 3]) + 0.1f * random_float(&random);
-        add_triangle(mesh, p[0], p[1], p[2]);
-        mesh->parts[0].element_first[i + 1] = i + 1;
+                (k < 3 ? 4 * random_double(&random) : p[0][k % 3]) + 0.1 * random_double(&random);
+        mesh_triangle(mesh, p[0], p[1], p[2]);
     }
-    mesh_bounds(mesh);
+    mesh_finish(arena, mesh);
     struct levels levels;
     levels_fill(&levels, mesh, detail_create(arena, mesh, true), prune_create(arena, mesh, 1),
                 0.5f);

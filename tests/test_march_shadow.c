@@ -263,7 +263,7 @@ static void test_march_shadow__pictures_are_as_traced_from_low_sun_to_zenith(voi
     (void)state;
     static const float elevations_deg[] = {6, 45, 90};
     struct world world = world_of_balls(2, 3000, 0.25);
-    ground_level(world.arena, &world.scene.terrain);
+    world.scene.terrain = level_ground(world.arena, 200, 0.4f);
     struct both both = both_ready(&world);
     for (size_t i = 0; i < sizeof elevations_deg / sizeof *elevations_deg; i++) {
         char name[32];
@@ -301,7 +301,7 @@ static struct world world_of_forest(float apart_m)
         mesh->positions[i][0] += 3;
     mesh_bounds(mesh);
     scene->species[0].plant = plant_from_mesh(world.arena, "beside", mesh);
-    ground_level(world.arena, &world.scene.terrain);
+    world.scene.terrain = level_ground(world.arena, 200, 0.4f);
     for (scene->instances_count = 0; scene->instances_count < 40; scene->instances_count++) {
         struct instance *tree = &scene->instances[scene->instances_count];
         *tree = scene->instances[0];
@@ -376,7 +376,7 @@ static void test_march_shadow__a_sun_below_the_ground_gives_no_light(void **stat
 {
     (void)state;
     struct world world = world_of_balls(3, 2000, 0.25);
-    ground_level(world.arena, &world.scene.terrain);
+    world.scene.terrain = level_ground(world.arena, 200, 0.4f);
     world_sun(&world, 0.6, -0.4, 0.3);
     struct ready *ready = march_ready(&world, &usual, lit | EFFECT_SUN_SHADOWS, 2);
     const struct frame *low = ready_picture(&world, ready);
@@ -392,7 +392,7 @@ static void test_march_shadow__threads_and_instruction_sets_change_no_byte(void 
     const unsigned effects = EFFECT_TWO_SIDED | EFFECT_SUN_SHADOWS;
     static const char *const names[] = {"plain", "avx2", "avx512"};
     struct world world = world_of_balls(3, 2000, 0.25);
-    ground_level(world.arena, &world.scene.terrain);
+    world.scene.terrain = level_ground(world.arena, 200, 0.4f);
     const struct frame *first = march_picture(&world, &usual, effects, 1);
     for (int i = 0; i < 3; i++) {
         struct march_options options = usual;

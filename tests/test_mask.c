@@ -157,7 +157,7 @@ static void test_mask__a_box_on_a_plane_shades_what_its_slabs_say(void **state)
     (void)state;
     enum { SIDE = 48 };
     struct world world = world_create(SIDE, SIDE, 0.4);
-    world_ground(&world, 100, 0.5f);
+    world.scene.terrain = level_ground(world.arena, 100, 0.5f);
     world_add(&world, box_mesh(world.arena), 0, 0, 0);
     world_look(&world, -2, 30, -2, -2, 0, -2);
     world_sun(&world, 0.48, 0.6, 0.64);

@@ -219,7 +219,7 @@ static struct claim fog_on_a_wall(uint64_t seed)
 static struct claim umbra(uint64_t seed)
 {
     struct world world = world_create(48, 32, 0.9);
-    world_ground(&world, 1000, 0.9f);
+    world.scene.terrain = level_ground(world.arena, 1000, 0.9f);
     world_add(&world, disc_mesh(world.arena, MATERIAL_LEAF, 0, 80, 1), -1.5f, 2, 0);
     world_look(&world, 0, 12, 0, 0, 0, 0);
     world_sun(&world, -2, 1, 0);
@@ -259,7 +259,7 @@ static struct claim sky_claim(const char *name, struct world *world, double trut
 static struct claim sky_before_a_wall(uint64_t seed)
 {
     struct world world = world_create(16, 16, 2e-4);
-    world_ground(&world, 1000, 1);
+    world.scene.terrain = level_ground(world.arena, 1000, 1);
     struct mesh *wall = mesh_new(world.arena, MATERIAL_BARK, 0, 2);
     mesh_quad(wall, (double[]){-1e5, 0, 0}, (double[]){1e5, 0, 0}, (double[]){1e5, 4, 0},
               (double[]){-1e5, 4, 0});
@@ -272,7 +272,7 @@ static struct claim sky_before_a_wall(uint64_t seed)
 static struct claim sky_under_a_disc(uint64_t seed)
 {
     struct world world = world_create(16, 16, 2e-4);
-    world_ground(&world, 1000, 1);
+    world.scene.terrain = level_ground(world.arena, 1000, 1);
     world_add(&world, disc_mesh(world.arena, MATERIAL_LEAF, 0, 2000, 1), 0, 2, 0)->scale = 1.5f;
     world_look(&world, 2, 1, 2, 0, 0, 0);
     return sky_claim("sky under a disc", &world, 4 / 6.25, seed);
@@ -283,7 +283,7 @@ static struct claim sky_under_a_disc(uint64_t seed)
 static struct claim sky_between_lids(uint64_t seed)
 {
     struct world world = world_create(16, 16, 0.02);
-    world_ground(&world, 1000, 1);
+    world.scene.terrain = level_ground(world.arena, 1000, 1);
     world_add(&world, disc_mesh(world.arena, MATERIAL_LEAF, 1, 90, 1), 0, 3, 0);
     world_look(&world, 0, 6, 2, 0, 3, 0);
     return sky_claim("sky over a leaf", &world, 1, seed);
@@ -326,7 +326,7 @@ static struct claim leaf_with_holes(uint64_t seed)
 static struct claim shadow_with_holes(uint64_t seed)
 {
     struct world world = world_create(40, 40, 0.9);
-    world_ground(&world, 100, 1);
+    world.scene.terrain = level_ground(world.arena, 100, 1);
     world_add(&world, half_leaf(world.arena, 0), 0, 10, 0);
     world_look(&world, 0, 8, 0, 0, 0, 0);
     world_sun(&world, 0, 1, 0);

@@ -215,7 +215,7 @@ static void test_light__terrain_is_seen_and_is_no_plant(void **state)
     (void)state;
     struct world world = world_create(5, 5, 0.01);
     float rgba[4];
-    world_ground(&world, 10, 0.8f);
+    world.scene.terrain = level_ground(world.arena, 10, 0.8f);
     world_look(&world, 0, 5, 0.1f, 0, 0, 0);
     world_sun(&world, 0, 1, 0);
     middle(&world, EFFECT_SUN_SHADOWS, rgba);

@@ -15,7 +15,7 @@ static struct world grove(int width_px, int height_px)
 {
     struct world world = world_create(width_px, height_px, 0.8);
     struct random random = random_seed(4, 4);
-    world_ground(&world, 60, 0.3f);
+    world.scene.terrain = level_ground(world.arena, 60, 0.3f);
     struct mesh *mesh = mesh_new(world.arena, MATERIAL_LEAF, 0.8f, 600);
     for (int i = 0; i < 600; i++) {
         double p[3][3], center[3];

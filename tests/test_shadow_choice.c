@@ -1,5 +1,6 @@
 /* The choice of sun shadows inside methods: masks and pictures of each against the ray-traced ones,
  * of each kind of caster, under more than one sun. */
+#include "level_ground.h"
 #include "shadow_world.h"
 #include "testing_tree.h"
 
@@ -24,7 +25,7 @@ static struct scene *world_of(struct arena *arena, float azimuth_rad)
     scene->tree_reach_m = 9;
     scene->camera.near_m = 25; /* the map is about as large as the picture */
     scene->camera.far_m = 60;
-    ground_level(arena, &scene->terrain);
+    scene->terrain = level_ground(arena, 200, 0.4f);
     return scene;
 }
 

@@ -10,62 +10,59 @@
 /* Loose triangles in a box of 5 m above the ground. */
 static struct mesh *leaves(struct arena *arena, size_t count)
 {
-    struct mesh *mesh = mesh_make(arena, MATERIAL_LEAF, count);
+    struct mesh *mesh = mesh_new(arena, MATERIAL_LEAF, 0.5f, count);
     struct random random = random_seed(4, 9);
     while (mesh->triangles_count < count) {
-        float corner[3][3], at[3];
+        double corner[3][3];
+        float at[3];
         for (int i = 0; i < 3; i++)
             at[i] = 5 * random_float(&random) - (i == 1 ? -1 : 2.5f);
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < 3; i++)
                 corner[k][i] = at[i] + 1.4f * random_float(&random) - 0.7f;
-        add_triangle(mesh, corner[0], corner[1], corner[2]);
+        mesh_triangle(mesh, corner[0], corner[1], corner[2]);
     }
-    return mesh_done(arena, mesh);
+    return mesh_finish(arena, mesh);
 }
 
 /* A level square, from two triangles, facing up. */
 static void add_square(struct mesh *mesh, float half_m, float height_m)
 {
-    const float a[3] = {-half_m, height_m, -half_m}, b[3] = {-half_m, height_m, half_m};
-    const float c[3] = {half_m, height_m, half_m}, d[3] = {half_m, height_m, -half_m};
-    add_triangle(mesh, a, b, c);
-    add_triangle(mesh, a, c, d);
+    const double a[3] = {-half_m, height_m, -half_m}, b[3] = {-half_m, height_m, half_m};
+    const double c[3] = {half_m, height_m, half_m}, d[3] = {half_m, height_m, -half_m};
+    mesh_quad(mesh, a, b, c, d);
 }
 
 static struct mesh *squares(struct arena *arena, size_t count, float half_m)
 {
-    struct mesh *mesh = mesh_make(arena, MATERIAL_LEAF, 2 * count);
+    struct mesh *mesh = mesh_new(arena, MATERIAL_LEAF, 0.5f, 2 * count);
     for (size_t i = 0; i < count; i++)
         add_square(mesh, half_m, 2 + 0.004f * (float)i);
-    return mesh_done(arena, mesh);
+    return mesh_finish(arena, mesh);
 }
 
 /* Needles: closed pieces of leaf that face outward, flat ones over each other. */
 static struct mesh *slabs(struct arena *arena, size_t count, float half_m)
 {
-    struct mesh *mesh = mesh_make(arena, MATERIAL_LEAF, 12 * count);
+    struct mesh *mesh = mesh_new(arena, MATERIAL_LEAF, 0.5f, 12 * count);
     mesh->materials->solid = true;
     for (size_t i = 0; i < count; i++) {
         const float low = 2 + 0.004f * (float)i, high = low + 0.002f;
-        float corner[2][4][3];
+        double corner[2][4][3];
         for (int k = 0; k < 4; k++)
             for (int up = 0; up < 2; up++) {
                 corner[up][k][0] = k == 1 || k == 2 ? half_m : -half_m;
                 corner[up][k][1] = up ? high : low;
                 corner[up][k][2] = k < 2 ? half_m : -half_m;
             }
-        for (int k = 1; k < 3; k++) {
-            add_triangle(mesh, corner[1][0], corner[1][k], corner[1][k + 1]);
-            add_triangle(mesh, corner[0][0], corner[0][k + 1], corner[0][k]);
-        }
+        mesh_quad(mesh, corner[1][0], corner[1][1], corner[1][2], corner[1][3]);
+        mesh_quad(mesh, corner[0][0], corner[0][3], corner[0][2], corner[0][1]);
         for (int k = 0; k < 4; k++) {
             int next = (k + 1) % 4;
-            add_triangle(mesh, corner[0][k], corner[0][next], corner[1][next]);
-            add_triangle(mesh, corner[0][k], corner[1][next], corner[1][k]);
+            mesh_quad(mesh, corner[0][k], corner[0][next], corner[1][next], corner[1][k]);
         }
     }
-    return mesh_done(arena, mesh);
+    return mesh_finish(arena, mesh);
 }
 
 /* Almost all pixels are right, and those that are not are beside the true edge. */
@@ -272,20 +269,19 @@ static void test_caster__boundaries_are_closed_whatever_the_mesh_and_the_sun(voi
 static void test_caster__the_silhouette_of_a_cube_has_six_or_four_edges(void **unused)
 {
     struct arena *arena = arena_create(0);
-    struct mesh *cube = mesh_make(arena, MATERIAL_BARK, 12);
+    struct mesh *cube = mesh_new(arena, MATERIAL_BARK, 0.5f, 12);
     for (int side = 0; side < 6; side++) {
-        float corner[4][3];
+        double corner[4][3];
         int a = side / 2, b = (a + 1) % 3, c = (a + 2) % 3;
         for (int k = 0; k < 4; k++) {
             bool first = k == 1 || k == 2, second = k >= 2;
-            corner[k][a] = (float)(side & 1);
+            corner[k][a] = side & 1;
             corner[k][b] = side & 1 ? first : second;
             corner[k][c] = side & 1 ? second : first;
         }
-        add_triangle(cube, corner[0], corner[1], corner[2]);
-        add_triangle(cube, corner[0], corner[2], corner[3]);
+        mesh_quad(cube, corner[0], corner[1], corner[2], corner[3]);
     }
-    mesh_done(arena, cube);
+    mesh_finish(arena, cube);
     struct shadow_caster caster;
     shadow_caster_build(arena, cube, false, &caster);
     assert_int_equal(caster.points_count, 8);

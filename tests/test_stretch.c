@@ -1,5 +1,6 @@
 /* Trees that are higher or lower than their plants: balls become ellipsoids, whose normals and
  * light are known in closed form. */
+#include "level_ground.h"
 #include "pictures.h"
 #include "shadow_world.h"
 #include "slices_meshes.h"
@@ -255,7 +256,7 @@ static void test_ray_texels__the_shadow_of_a_stretched_tree_is_as_traced(void **
         scene->instances[0].rotation_rad = 1;
         scene->instances[0].stretch = stretches[k];
         scene->tree_reach_m = 16;
-        ground_level(arena, &scene->terrain);
+        scene->terrain = level_ground(arena, 200, 0.4f);
         struct view view = tree_view(scene, 1.5f, 0.7f, 100, 34);
         for (int shaded = 0; shaded < 2; shaded++) {
             unsigned effects = EFFECT_TWO_SIDED | (shaded ? EFFECT_SUN_SHADOWS : 0);
