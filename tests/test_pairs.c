@@ -1,5 +1,5 @@
 /* Pairs of cells without and with the sun's shadows: which rows are one. */
-#include "testing.h"
+#include "tiny_result.h"
 
 #include "report/page.h"
 #include "report/pairs.h"
@@ -11,29 +11,12 @@
 static void add(struct arena *arena, struct run *run, const char *method, const char *options,
                 int round, double seconds)
 {
-    struct result *result = &run->results[run->results_count++];
-    struct cell cell = {.scene = "tiny",
-                        .method_name = method,
-                        .options = options,
-                        .trees = 4,
-                        .lod = LOD_AUTO,
-                        .width_px = 96,
-                        .height_px = 72,
-                        .format = TARGET_RGBA16F,
-                        .seed = 1};
-    for (const struct method *const *each = methods_builtin; *each; each++)
-        if (strcmp((*each)->name, method) == 0)
-            cell.method = *each;
-    void *values = arena_alloc(arena, 1, cell.method->options_size);
-    options_default(cell.method->options, values);
-    assert_int_equal(options_parse(cell.method->options, options, values, NULL), STATUS_OK);
-    cell.name = arena_printf(arena, "tiny/%s:%s", method, options);
-    result_init(result, &cell, round);
-    result->instances = 4;
-    result->effects = method_effects(cell.method, values, EFFECTS_ALL);
+    struct result *result = tiny_result(arena, run, method, options, 4, round);
+    void *values = arena_alloc(arena, 1, result->cell.method->options_size);
+    options_default(result->cell.method->options, values);
+    assert_int_equal(options_parse(result->cell.method->options, options, values, NULL), STATUS_OK);
+    result->effects = method_effects(result->cell.method, values, EFFECTS_ALL);
     result->scene_effects = EFFECTS_ALL;
-    result->frames_count = 1;
-    result->frame_seconds = ARENA_ARRAY(arena, double, 1);
     result->frame_seconds[0] = seconds;
 }
 
@@ -43,13 +26,6 @@ static struct shadow_pair *found(struct arena *arena, struct run *run, struct bo
     *book = book_make(arena, run);
     assert_int_equal((*book)->groups_count, 1);
     return shadow_pairs(*book, (*book)->groups, count);
-}
-
-static struct run *run_new(struct arena *arena)
-{
-    struct run *run = ARENA_NEW(arena, struct run);
-    run->results = ARENA_ARRAY(arena, struct result, 32);
-    return run;
 }
 
 static void test_pairs__a_switch_and_what_depends_on_it_may_differ_and_nothing_else(void **state)
@@ -74,7 +50,7 @@ static void test_pairs__a_switch_and_what_depends_on_it_may_differ_and_nothing_e
         {"ray-texels shadows=0", "ray-texels shadows=32"},
     };
     struct arena *arena = arena_create(0);
-    struct run *run = run_new(arena);
+    struct run *run = tiny_run(arena, 32);
     struct book *book;
     size_t count;
     for (size_t i = 0; i < sizeof cells / sizeof *cells; i++)
@@ -93,7 +69,7 @@ static void test_pairs__the_price_is_of_times_of_the_same_round(void **state)
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    struct run *run = run_new(arena);
+    struct run *run = tiny_run(arena, 32);
     struct book *book;
     size_t count;
     static const double seconds[3][2] = {{0.02, 0.06}, {0.01, 0.05}, {0.01, 0.04}};
@@ -113,7 +89,7 @@ static void test_pairs__the_page_sets_both_errors_and_the_price_beside_each_othe
 {
     (void)state;
     struct arena *arena = arena_create(0);
-    struct run *run = run_new(arena);
+    struct run *run = tiny_run(arena, 32);
     struct figures figures = {0};
     for (int with = 0; with < 2; with++) {
         char *text = NULL;

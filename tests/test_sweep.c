@@ -1,12 +1,10 @@
 /* Swept options: which curves a run holds, by the rule that all else is equal and three values are
  * needed. */
-#include "testing.h"
+#include "tiny_result.h"
 
 #include "report/sweep.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct world {
     struct arena *arena;
@@ -17,8 +15,7 @@ static int setup(void **state)
 {
     struct world *world = calloc(1, sizeof *world);
     world->arena = arena_create(0);
-    world->run = ARENA_NEW(world->arena, struct run);
-    world->run->results = ARENA_ARRAY(world->arena, struct result, 100);
+    world->run = tiny_run(world->arena, 100);
     *state = world;
     return 0;
 }
@@ -34,26 +31,7 @@ static int teardown(void **state)
 static struct result *add(struct world *world, const char *method, const char *options,
                           size_t trees)
 {
-    struct result *result = &world->run->results[world->run->results_count++];
-    struct cell cell = {.scene = "tiny",
-                        .method_name = method,
-                        .options = options,
-                        .trees = trees,
-                        .lod = LOD_AUTO,
-                        .width_px = 96,
-                        .height_px = 72,
-                        .format = TARGET_RGBA16F,
-                        .seed = 1};
-    for (const struct method *const *each = methods_builtin; *each; each++)
-        if (strcmp((*each)->name, method) == 0)
-            cell.method = *each;
-    cell.name = arena_printf(world->arena, "tiny/%s:%s/trees=%zu", method, options, trees);
-    result_init(result, &cell, 0);
-    result->instances = trees;
-    result->frames_count = 1;
-    result->frame_seconds = ARENA_ARRAY(world->arena, double, 1);
-    result->frame_seconds[0] = 0.01;
-    return result;
+    return tiny_result(world->arena, world->run, method, options, trees, 0);
 }
 
 static const struct sweep *found(struct world *world, size_t *count)
