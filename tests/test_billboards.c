@@ -1,46 +1,14 @@
 /* Billboards against the ray-traced reference: silhouette, coverage, light, views, and the borders
  * of their use. */
-#include "testing_tree.h"
+#include "testing_stacks.h"
 
 #include "bake/views.h"
 
 #include <stdio.h>
 
-static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
-
-struct fixture {
-    struct arena *arena;
-    struct plant *plant;
-    const struct method *method;
-};
-
 static int open_fixture(void **state)
 {
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    fixture->arena = arena_create(0);
-    fixture->plant = plant_from_mesh(fixture->arena, "lopsided", tree_mesh(fixture->arena, 400));
-    fixture->method = tree_method("billboards");
-    *state = fixture;
-    return 0;
-}
-
-static int close_fixture(void **state)
-{
-    struct fixture *fixture = *state;
-    arena_destroy(fixture->arena);
-    free(fixture);
-    return 0;
-}
-
-/* From pictures of the plant with texels that are half of a pixel at 9 m across: more would only
- * take longer. */
-static struct frame *draw(struct fixture *f, const char *options, const struct scene *scene,
-                          unsigned effects, const struct view *view, struct gl_counters *counters)
-{
-    const char *more = strstr(options, "resolution") ? "" : ",resolution=128";
-    return tree_draw(f->arena, f->method,
-                     *options ? arena_printf(f->arena, "%s%s", options, more) : more + 1, scene,
-                     effects, view, counters);
+    return fixture_open(state, "billboards");
 }
 
 static void test_billboards__a_tree_has_its_outline_from_every_side(void **state)
@@ -50,7 +18,7 @@ static void test_billboards__a_tree_has_its_outline_from_every_side(void **state
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, (float)side * 1.5707963f, 0, 300, 9);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        struct frame *drawn = draw(f, "alpha=blend", scene, lit, &view, NULL);
+        struct frame *drawn = fixture_draw(f, "alpha=blend", scene, lit, &view, NULL);
         double covered = tree_mean(truth, 3), off = tree_difference(drawn, truth, false);
         if (off > 0.2 * covered)
             fail_msg("side %d: coverage is off by %g of %g", side, off, covered);
@@ -68,7 +36,7 @@ static void test_billboards__a_turned_moved_and_scaled_tree_stands_where_it_shou
     scene->instances[1] = (struct instance){{2, -0.5f, -2}, 3.9269908f, 0.6f, 0, 1};
     struct view view = tree_view(scene, 0.3926991f, 0, 300, 9);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-    struct frame *drawn = draw(f, "views=64,alpha=blend", scene, lit, &view, NULL);
+    struct frame *drawn = fixture_draw(f, "views=64,alpha=blend", scene, lit, &view, NULL);
     assert_true(tree_difference(drawn, truth, false) < 0.25 * tree_mean(truth, 3));
     assert_true(tree_mean(drawn, 3) > 0.97 * tree_mean(truth, 3));
 }
@@ -115,7 +83,7 @@ static void test_billboards__light_follows_the_sun_as_the_reference_does(void **
         struct view view = tree_view(scene, 0, 0, 300, 9);
         unsigned wanted = effects[k % 4];
         struct frame *truth = tree_reference(f->arena, scene, wanted, &view);
-        struct frame *drawn = draw(f, "alpha=blend", scene, wanted, &view, NULL);
+        struct frame *drawn = fixture_draw(f, "alpha=blend", scene, wanted, &view, NULL);
         /* Mean radiance of what is covered. Where light is scarce (turned away from the sun, one
          * side, no ambient) the expansion's own error of up to 1/16 shows, so there it is held
          * against the albedo. */
@@ -165,12 +133,13 @@ static void test_billboards__views_from_above_are_right_from_above(void **state)
     for (int k = 0; k < 4; k++) {
         struct view view = grid_view(scene, VIEWS_HEMISPHERE, 11, places[k][0], places[k][1]);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        double circle = tree_rmse(truth, draw(f, "views=64,alpha=blend", scene, lit, &view, NULL));
+        double circle =
+            tree_rmse(truth, fixture_draw(f, "views=64,alpha=blend", scene, lit, &view, NULL));
         static const char *const options[] = {
             "alpha=blend,layout=hemisphere,views=121",
             "alpha=blend,layout=hemisphere,views=121,pick=blended"};
         for (int i = 0; i < 2; i++) {
-            struct frame *drawn = draw(f, options[i], scene, lit, &view, NULL);
+            struct frame *drawn = fixture_draw(f, options[i], scene, lit, &view, NULL);
             double error = tree_rmse(truth, drawn), mean = tree_mean(drawn, 3);
             if (error > 0.6 * circle || fabs(mean / tree_mean(truth, 3) - 1) > 0.02)
                 fail_msg("%s at %d: error %g, circle %g, coverage %.4f", options[i], k, error,
@@ -187,11 +156,11 @@ static void test_billboards__views_from_below_need_the_whole_octahedron(void **s
     assert_true(view.eye_m[1] < -100);
     struct frame *truth = tree_reference(f->arena, scene, lit, &view);
     double half = tree_rmse(
-        truth, draw(f, "alpha=blend,layout=hemisphere,views=121", scene, lit, &view, NULL));
+        truth, fixture_draw(f, "alpha=blend,layout=hemisphere,views=121", scene, lit, &view, NULL));
     static const char *const options[] = {"alpha=blend,layout=octahedron,views=256",
                                           "alpha=blend,layout=octahedron,views=256,pick=blended"};
     for (int i = 0; i < 2; i++) {
-        double whole = tree_rmse(truth, draw(f, options[i], scene, lit, &view, NULL));
+        double whole = tree_rmse(truth, fixture_draw(f, options[i], scene, lit, &view, NULL));
         if (whole > 0.6 * half)
             fail_msg("%s: error %g, hemisphere %g", options[i], whole, half);
     }
@@ -210,7 +179,7 @@ static void test_billboards__nearer_trees_hide_farther_ones(void **state)
             scene->instances[k].position_m[2] = -30;
             scene->instances[k].rotation_rad = 2;
             struct view view = tree_view(scene, 0, 0, 300, 9);
-            drawn[k] = draw(f, options[i], scene, lit, &view, NULL);
+            drawn[k] = fixture_draw(f, options[i], scene, lit, &view, NULL);
         }
         if (i < 2)
             assert_memory_equal(drawn[0]->rgba, drawn[1]->rgba, TREE_PIXELS * 16);
@@ -229,7 +198,7 @@ static void test_billboards__ten_thousand_trees_take_a_few_draw_calls(void **sta
     }
     struct view view = tree_view(scene, 0.3f, 0.4f, 150, 60);
     struct gl_counters counters;
-    draw(f, "resolution=64", scene, lit, &view, &counters);
+    fixture_draw(f, "resolution=64", scene, lit, &view, &counters);
     assert_true(counters.draw_calls <= 4);
     assert_true(counters.triangles > 2000);
 }
@@ -244,7 +213,7 @@ static void test_billboards__an_eye_in_the_crown_is_drawn(void **state)
             struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
             float distance = k == 0 ? 0.5f : k == 1 ? 1e-3f : 1e-7f;
             struct view view = tree_view(scene, 0, k == 2 ? 1.5707963f : 0, distance, distance);
-            draw(f, options[i], scene, lit, &view, NULL);
+            fixture_draw(f, options[i], scene, lit, &view, NULL);
         }
 }
 
@@ -260,7 +229,7 @@ static void test_billboards__only_species_with_a_tree_are_built(void **state)
     scene->species_count = 2;
     scene->instances[0].species = 1;
     struct view view = tree_view(scene, 0, 0, 300, 9);
-    struct frame *drawn = draw(f, "alpha=blend", scene, lit, &view, NULL);
+    struct frame *drawn = fixture_draw(f, "alpha=blend", scene, lit, &view, NULL);
     assert_true(tree_mean(drawn, 3) > 0.05);
     assert_false(plant_cost(idle).built);
 }
@@ -288,7 +257,7 @@ static void test_billboards__terrain_in_front_hides_and_behind_does_not(void **s
     for (int i = 0; i < 4; i++) {
         struct view view = grid_view(scene, VIEWS_HEMISPHERE, 11, columns[i % 2], 4);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        struct frame *drawn = draw(f, options[i / 2], scene, lit, &view, NULL);
+        struct frame *drawn = fixture_draw(f, options[i / 2], scene, lit, &view, NULL);
         double ratio = tree_mean(drawn, 3) / tree_mean(truth, 3);
         if (fabs(ratio - 1) > 0.03)
             fail_msg("%s, column %zu: %.4f of the coverage", options[i / 2], columns[i % 2], ratio);
@@ -296,7 +265,7 @@ static void test_billboards__terrain_in_front_hides_and_behind_does_not(void **s
     for (int i = 0; i < 4; i++)
         heights[i] = 12; /* a plateau between the eye below it and the tree */
     struct view view = tree_view(scene, 0.6f, 1.2f, 300, 9);
-    struct frame *drawn = draw(f, "alpha=blend", scene, lit, &view, NULL);
+    struct frame *drawn = fixture_draw(f, "alpha=blend", scene, lit, &view, NULL);
     assert_true(tree_mean(drawn, 3) == 0);
 }
 

@@ -1,41 +1,9 @@
 /* Crossed quads against the ray-traced reference, and their order against the depth buffer. */
-#include "testing_tree.h"
-
-static const unsigned lit = EFFECT_TWO_SIDED | EFFECT_AMBIENT;
-
-struct fixture {
-    struct arena *arena;
-    struct plant *plant;
-    const struct method *method;
-};
+#include "testing_stacks.h"
 
 static int open_fixture(void **state)
 {
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    fixture->arena = arena_create(0);
-    fixture->plant = plant_from_mesh(fixture->arena, "lopsided", tree_mesh(fixture->arena, 400));
-    fixture->method = tree_method("cross-quads");
-    *state = fixture;
-    return 0;
-}
-
-static int close_fixture(void **state)
-{
-    struct fixture *fixture = *state;
-    arena_destroy(fixture->arena);
-    free(fixture);
-    return 0;
-}
-
-/* From pictures of the plant with texels that are half of a pixel at 9 m across: more would only
- * take longer. */
-static struct frame *draw(struct fixture *f, const char *options, const struct scene *scene,
-                          unsigned effects, const struct view *view, struct gl_counters *counters)
-{
-    const char *more = strstr(options, "resolution") ? "" : ",resolution=128";
-    return tree_draw(f->arena, f->method,
-                     *options ? arena_printf(f->arena, "%s%s", options, more) : more + 1, scene,
-                     effects, view, counters);
+    return fixture_open(state, "cross-quads");
 }
 
 /* Against a plane's front and back the other plane is seen edge on, so the picture is the plane's
@@ -47,7 +15,7 @@ static void test_cross_quads__front_and_back_have_the_plants_outline(void **stat
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, (float)side * 1.5707963f, 0, 300, 9);
         struct frame *truth = tree_reference(f->arena, scene, lit, &view);
-        struct frame *drawn = draw(f, "alpha=blend", scene, lit, &view, NULL);
+        struct frame *drawn = fixture_draw(f, "alpha=blend", scene, lit, &view, NULL);
         double covered = tree_mean(truth, 3), off = tree_difference(drawn, truth, false);
         double mirrored = tree_difference(drawn, truth, true);
         if (off > 0.25 * covered || mirrored < 2.5 * off)
@@ -64,7 +32,7 @@ static void test_cross_quads__light_follows_the_sun_as_the_reference_does(void *
         struct view view = tree_view(scene, k < 4 ? 0 : 3.1415927f, 0, 300, 9);
         unsigned effects = k % 2 ? lit : EFFECT_AMBIENT | EFFECT_FOG;
         struct frame *truth = tree_reference(f->arena, scene, effects, &view);
-        struct frame *drawn = draw(f, "alpha=blend", scene, effects, &view, NULL);
+        struct frame *drawn = fixture_draw(f, "alpha=blend", scene, effects, &view, NULL);
         double cover = tree_mean(drawn, 3) / tree_mean(truth, 3);
         for (int channel = 0; channel < 3; channel++) {
             double ratio = tree_mean(drawn, channel) / tree_mean(truth, channel) / cover;
@@ -120,8 +88,8 @@ static void test_cross_quads__half_planes_are_blended_from_back_to_front(void **
         struct scene *scene = tree_scene(f->arena, plant, 1, 1);
         scene->instances[0].rotation_rad = 0.7f * (float)k;
         struct view view = tree_view(scene, 0.2617994f * (float)k + 0.05f, 0.1f, 300, 9);
-        struct frame *blended = draw(f, options[k % 3][0], scene, lit, &view, NULL);
-        struct frame *tested = draw(f, options[k % 3][1], scene, lit, &view, NULL);
+        struct frame *blended = fixture_draw(f, options[k % 3][0], scene, lit, &view, NULL);
+        struct frame *tested = fixture_draw(f, options[k % 3][1], scene, lit, &view, NULL);
         /* apart from the edges, where one blends and the other does not */
         size_t wrong = 0, covered = 0;
         for (int i = 0; i < TREE_PIXELS; i++) {
@@ -151,7 +119,7 @@ static void test_cross_quads__a_picture_that_fills_its_layer_ends_at_the_border(
             struct scene *scene = tree_scene(f->arena, plant, 1, 1);
             float span_m = 40 + 3.1f * (float)i;
             struct view view = tree_view(scene, 0, 0, 3000, span_m);
-            drawn += tree_mean(draw(f, options[k], scene, EFFECT_AMBIENT, &view, NULL), 3);
+            drawn += tree_mean(fixture_draw(f, options[k], scene, EFFECT_AMBIENT, &view, NULL), 3);
             wanted += 24 / (span_m * span_m);
         }
         if (fabs(drawn / wanted - 1) > 0.05)
@@ -166,9 +134,9 @@ static void test_cross_quads__every_way_keeps_the_same_coverage(void **state)
     for (int k = 0; k < 2; k++) {
         struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
         struct view view = tree_view(scene, 0.7853982f, 0.1f, 300, spans[k]);
-        double blend = tree_mean(draw(f, "alpha=blend", scene, lit, &view, NULL), 3);
-        double coverage = tree_mean(draw(f, "alpha=coverage", scene, lit, &view, NULL), 3);
-        double test = tree_mean(draw(f, "alpha=test", scene, lit, &view, NULL), 3);
+        double blend = tree_mean(fixture_draw(f, "alpha=blend", scene, lit, &view, NULL), 3);
+        double coverage = tree_mean(fixture_draw(f, "alpha=coverage", scene, lit, &view, NULL), 3);
+        double test = tree_mean(fixture_draw(f, "alpha=test", scene, lit, &view, NULL), 3);
         if (fabs(coverage / blend - 1) > 0.03 || fabs(test / blend - 1) > 0.1)
             fail_msg("span %g: blended %g, coverage %g, tested %g", spans[k], blend, coverage,
                      test);
@@ -185,7 +153,7 @@ static void test_cross_quads__ten_thousand_trees_take_a_few_draw_calls(void **st
     }
     struct view view = tree_view(scene, 0.3f, 0.4f, 150, 60);
     struct gl_counters counters;
-    draw(f, "resolution=64", scene, lit, &view, &counters);
+    fixture_draw(f, "resolution=64", scene, lit, &view, &counters);
     assert_true(counters.draw_calls <= 4);
     assert_true(counters.triangles > 4000);
 }
@@ -199,7 +167,7 @@ static void test_cross_quads__an_eye_in_the_crown_is_drawn(void **state)
             struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
             float distance = k == 0 ? 0.5f : k == 1 ? 1e-3f : 1e-7f;
             struct view view = tree_view(scene, 0, k == 2 ? 1.5707963f : 0, distance, distance);
-            draw(f, options[i], scene, lit, &view, NULL);
+            fixture_draw(f, options[i], scene, lit, &view, NULL);
         }
 }
 

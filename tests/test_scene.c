@@ -1,5 +1,5 @@
 /* Scene files: every key, every refusal, the hash. */
-#include "testing.h"
+#include "own_folder.h"
 
 #include "base/arena.h"
 #include "base/file.h"
@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-static const char *folder; /* of this test's own files */
 
 static const char *write_text(const char *name, const char *text)
 {
@@ -506,24 +504,6 @@ static void test_readme__names_no_key_that_the_loader_does_not_know(void **state
     }
     assert_in_range(keys_count, 45, 100);
     arena_destroy(arena);
-}
-
-static int folder_make(void **state)
-{
-    (void)state;
-    static char name[] = "/tmp/treeline-scene-XXXXXX", cache[64];
-    folder = mkdtemp(name);
-    snprintf(cache, sizeof cache, "%s/cache", name);
-    setenv("TREELINE_CACHE", cache, 1);
-    return folder ? 0 : -1;
-}
-
-static int folder_remove(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return system(command);
 }
 
 int main(void)

@@ -1,6 +1,6 @@
 /* Terrain: heights and normals against closed forms, the mesh against ray casting, images against
  * their bytes. */
-#include "testing.h"
+#include "own_folder.h"
 
 #include "base/arena.h"
 #include "base/file.h"
@@ -12,8 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const char *folder;
 
 static struct terrain terrain_of(struct arena *arena, uint32_t samples_x, uint32_t samples_z,
                                  float size_x_m, float size_z_m, double (*height)(double, double))
@@ -286,24 +284,6 @@ static void test_hills__fill_their_range_and_are_gentle(void **state)
     assert_float_equal(high, 700, 1e-3);
     assert_true(steepest > 0.5f); /* 60 degrees, what the automatic near plane relies on */
     arena_destroy(arena);
-}
-
-static int folder_make(void **state)
-{
-    (void)state;
-    static char name[] = "/tmp/treeline-terrain-XXXXXX", cache[64];
-    folder = mkdtemp(name);
-    snprintf(cache, sizeof cache, "%s/cache", name);
-    setenv("TREELINE_CACHE", cache, 1);
-    return folder ? 0 : -1;
-}
-
-static int folder_remove(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return system(command);
 }
 
 int main(void)

@@ -1,6 +1,6 @@
 /* What terrains are made of: files of every kind against their bytes, colours against closed forms,
  * bad values by their lines, noise, and where trees may stand. */
-#include "testing.h"
+#include "own_folder.h"
 
 #include "base/file.h"
 #include "scene/place.h"
@@ -12,8 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const char *folder;
 
 static const char *path_of(struct arena *arena, const char *name)
 {
@@ -350,24 +348,6 @@ static void test_trees__stand_where_slope_and_height_allow_them_and_all_of_them(
         }
     }
     arena_destroy(arena);
-}
-
-static int folder_make(void **state)
-{
-    (void)state;
-    static char name[] = "/tmp/treeline-sources-XXXXXX", cache[64];
-    folder = mkdtemp(name);
-    snprintf(cache, sizeof cache, "%s/cache", name);
-    setenv("TREELINE_CACHE", cache, 1);
-    return folder ? 0 : -1;
-}
-
-static int folder_remove(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return system(command);
 }
 
 int main(void)
