@@ -6,23 +6,13 @@
 #include "base/random.h"
 #include "needles_ways.h"
 
-enum { DRAWS = 400, PANELS = 8 };
+enum { DRAWS = 400 };
 
 struct drawn {
     struct needles_twig_double twig;
     struct needles_sight_double sight;
     struct needles_sums_double sums; /* (10), (6), (8), converged */
 };
-
-static struct needles_sums_double sums_of(const struct needles_twig_double *twig,
-                                          const struct needles_sight_double *sight)
-{
-    struct needles_sums_double sums = {{0, 0}, {0, 0}, {0, 0}};
-    for (int i = 0; i < PANELS; i++)
-        needles_cone_panel_double(twig->sine, twig->cosine, sight, 8, (double)i / PANELS,
-                                  (double)(i + 1) / PANELS, &sums);
-    return sums;
-}
 
 static struct drawn draw(struct random *random)
 {
@@ -34,7 +24,7 @@ static struct drawn draw(struct random *random)
     struct drawn d = {
         .twig = needles_twig_of_double(phi, 16, 0.02, radius, 2 * 16 * radius / (PI * density)),
         .sight = needles_sight_of_double(light, eye, 10, false)};
-    d.sums = sums_of(&d.twig, &d.sight);
+    d.sums = needles_converged_sums_double(&d.twig, &d.sight);
     return d;
 }
 
@@ -106,7 +96,7 @@ static struct needles_disc_double disc_of(const struct drawn *d)
     for (int side = 0; side < 2; side++) {
         const double *way = side ? light : eye;
         struct needles_sight_double along = needles_sight_of_double(way, way, -1, false);
-        struct needles_sums_double sums = sums_of(&d->twig, &along);
+        struct needles_sums_double sums = needles_converged_sums_double(&d->twig, &along);
         for (int half = 0; half < 2; half++)
             (side ? disc.light : disc.eye)[half] = 2 * d->twig.count * d->twig.radius_m /
                                                    (PI * d->twig.spacing_m) * sums.seen[half] /

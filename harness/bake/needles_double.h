@@ -124,6 +124,19 @@
 #undef needles_twig_opacity
 #undef needles_twig_shade
 
+/* F, D and S of a twig's cone, (10), (6) and (8), by 64 nodes on each quarter of it. */
+static inline struct needles_sums_double
+needles_converged_sums_double(const struct needles_twig_double *twig,
+                              const struct needles_sight_double *sight)
+{
+    enum { PANELS = 8 };
+    struct needles_sums_double sums = {{0, 0}, {0, 0}, {0, 0}};
+    for (int i = 0; i < PANELS; i++)
+        needles_cone_panel_double(twig->sine, twig->cosine, sight, 8, (double)i / PANELS,
+                                  (double)(i + 1) / PANELS, &sums);
+    return sums;
+}
+
 /* needles.h may come before or after. */
 #undef TREELINE_BAKE_NEEDLES_NEEDLE_H
 #undef TREELINE_BAKE_NEEDLES_OPACITY_H

@@ -12,7 +12,7 @@
 
 #define PI 3.14159265358979324
 
-enum { LINES = 120, PLACES = 120, PANELS = 8 };
+enum { LINES = 120, PLACES = 120 };
 
 /* 2 N r/(pi dh): sparse, the paper's own, dense. */
 static const double densities[] = {0.1, 0.4, 1.2};
@@ -25,22 +25,11 @@ struct point {
 };
 static const double exponent = 20;
 
-/* F, D, S of many nodes. */
-static struct needles_sums_double fine_sums(const struct needles_twig_double *twig,
-                                            const struct needles_sight_double *sight)
-{
-    struct needles_sums_double sums = {{0, 0}, {0, 0}, {0, 0}};
-    for (int i = 0; i < PANELS; i++)
-        needles_cone_panel_double(twig->sine, twig->cosine, sight, 8, (double)i / PANELS,
-                                  (double)(i + 1) / PANELS, &sums);
-    return sums;
-}
-
 static void fine_depths(const struct needles_twig_double *twig, double density,
                         const double direction[3], double depths[2])
 {
     struct needles_sight_double sight = needles_sight_of_double(direction, direction, -1, false);
-    struct needles_sums_double sums = fine_sums(twig, &sight);
+    struct needles_sums_double sums = needles_converged_sums_double(twig, &sight);
     double flat = sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
     for (int half = 0; half < 2; half++)
         depths[half] = density * sums.seen[half] / (PI * twig->sine * flat);
@@ -75,7 +64,7 @@ static struct point truth_of(const struct needles_twig_double *twig,
     fine_depths(twig, density, sight->light, disc.light);
     double seen[2], lit[2];
     fine_lit(&disc, seen, lit);
-    struct needles_sums_double sums = fine_sums(twig, sight);
+    struct needles_sums_double sums = needles_converged_sums_double(twig, sight);
     struct point point = {seen[0] + seen[1], 0, 0};
     for (int half = 0; half < 2; half++) {
         point.light += lit[half] * sums.diffuse[half] / sums.seen[half];
