@@ -81,6 +81,37 @@ void plot_curve(struct plot *plot)
     fputs(plot->curves++ ? ", \\\n    " : "plot ", plot->gp);
 }
 
+void plot_points(struct plot *plot, int block, const char *how, size_t method, bool filled,
+                 const char *title)
+{
+    const struct book *book = plot->book;
+    plot_curve(plot);
+    fprintf(plot->gp,
+            "\"%s.dat\" index %d %s pointtype %d pointsize 0.9 linewidth 1 linecolor rgb "
+            "\"#%06x\" ",
+            plot->name, block, how, symbol_gnuplot(book, method, filled),
+            tint_rgb(tint_method(book, method)));
+    fputs(title ? "title " : "notitle", plot->gp);
+    if (!title)
+        return;
+    plot_text(plot->gp, title);
+    plot->key_rows++;
+}
+
+void plot_upright(struct plot *plot, int number, double x, const char *text)
+{
+    unsigned muted = tint_rgb(TINT_MUTED);
+    fprintf(plot->gp,
+            "set arrow %d from first %.9g, graph 0 to first %.9g, graph 1 nohead dashtype 3 "
+            "linecolor rgb \"#%06x\"\nset label %d ",
+            number, x, x, muted, number);
+    plot_text(plot->gp, text);
+    fprintf(plot->gp,
+            " at first %.9g, graph 0.98 right rotate by 90 offset 0.8,0 font \",10\" textcolor rgb "
+            "\"#%06x\"\n",
+            x, muted);
+}
+
 /* The plotting area of the wide version, about, and of its small letters. */
 static const double area_width_px = 440, area_height_px = 245, letter_px = 7.4, line_px = 12;
 

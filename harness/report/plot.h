@@ -37,6 +37,15 @@ void plot_text(FILE *out, const char *text);
 int plot_block(struct plot *plot, const char *what);
 /* The next curve: writes "plot " or ", ". */
 void plot_curve(struct plot *plot);
+/* More lines than this no static plot tells apart. */
+enum { PLOT_LINES_MAX = 24 };
+/* The points of a block of the data with the symbol of a method, filled or open; how: gnuplot's
+ * "with yerrorbars" or the like. title: in the key; NULL: not there. */
+void plot_points(struct plot *plot, int block, const char *how, size_t method, bool filled,
+                 const char *title);
+/* A dotted upright line over the whole height, with a text along it; number: of the arrow and label
+ * that they are. Call before the first curve. */
+void plot_upright(struct plot *plot, int number, double x, const char *text);
 /* No label may cover this point. */
 void plot_keep_clear(struct plot *plot, double x, double y);
 /* Nor what is drawn from one point to another, along an axis. */

@@ -3,9 +3,6 @@
 
 #include <math.h>
 
-/* More lines than this no static plot tells apart. */
-enum { LINES_MAX = 24 };
-
 /* How many series of the same method come before this one: tells them apart by dashes. */
 static int plot_variant(const struct book *book, size_t series)
 {
@@ -101,7 +98,7 @@ enum status plot_growth(const struct book *book, size_t family, const char *fold
     size_t lines = 0;
     for (size_t i = 0; i < book->laws_count; i++)
         lines += book->laws[i].points->family == family;
-    if (!(x.low < x.high && y.low <= y.high) || lines > LINES_MAX)
+    if (!(x.low < x.high && y.low <= y.high) || lines > PLOT_LINES_MAX)
         return STATUS_OK;
     axis_widen(&x, 0.05, 0.05);
     axis_widen(&y, 0.08, 0.08);

@@ -1,13 +1,9 @@
-/* The static plots of shadow masks: what is wrong against what shadows cost, and against distance.
- */
+/* The static plot of shadow masks: what is wrong against what shadows cost. */
 #include "report/plot.h"
 #include "stats/stats.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-enum { LINES_MAX = 24 };
 
 /* Draws all triangles in the same light without shadows. */
 static const char unshaded[] = "polygons";
@@ -123,11 +119,7 @@ static void put_floor(struct masks *masks)
     struct plot *plot = &masks->plot;
     if (isnan(masks->floor))
         return;
-    fprintf(plot->gp,
-            "set arrow 1 from first %.9g, graph 0 to first %.9g, graph 1 nohead dashtype 3 "
-            "linecolor rgb \"#%06x\"\nset label 1 \"noise of the reference\" at first %.9g, "
-            "graph 0.98 right rotate by 90 offset 0.8,0 font \",10\" textcolor rgb \"#%06x\"\n",
-            masks->floor, masks->floor, tint_rgb(TINT_MUTED), masks->floor, tint_rgb(TINT_MUTED));
+    plot_upright(plot, 1, masks->floor, "noise of the reference");
     for (double beside = 1; beside < 1.1; beside += 0.02) /* the line and its text */
         plot_keep_clear_line(plot, beside * masks->floor, masks->y.low, beside * masks->floor,
                              masks->y.high);
@@ -164,13 +156,8 @@ static void masks_point(struct masks *masks, const struct row *row, bool front)
             cost_ms(masks, row, COLUMN_frame_seconds), fmax(range.low, masks->x.low),
             fmax(range.high, masks->x.low), cost_ms(masks, row, COLUMN_frame_seconds_low),
             cost_ms(masks, row, COLUMN_frame_seconds_high), row->label);
-    plot_curve(plot);
-    fprintf(plot->gp,
-            "\"%s.dat\" index %d using 1:2:3:4:5:6 with xyerrorbars pointtype %d pointsize 0.9 "
-            "linewidth 1 linecolor rgb \"#%06x\" title ",
-            plot->name, block, symbol_gnuplot(book, row->method_index, front),
-            tint_rgb(tint_method(book, row->method_index)));
-    plot_text(plot->gp, arena_printf(book->arena, "%d %s", ++plot->key_rows, row->label));
+    plot_points(plot, block, "using 1:2:3:4:5:6 with xyerrorbars", row->method_index, front,
+                arena_printf(book->arena, "%d %s", plot->key_rows + 1, row->label));
 }
 
 enum status plot_masks(const struct book *book, const struct group *group, const char *folder,
@@ -194,71 +181,4 @@ enum status plot_masks(const struct book *book, const struct group *group, const
         for (step = 0; next_row(&masks, m, &step, &row);)
             masks_point(&masks, &book->rows[group->rows[row]], masks.on_front[row]);
     return plot_close(plot, figure, error);
-}
-
-struct sight {
-    double distance_m, percent;
-};
-
-static int compare_sights(const void *a, const void *b)
-{
-    const struct sight *x = a, *y = b;
-    return (x->distance_m > y->distance_m) - (x->distance_m < y->distance_m);
-}
-
-/* A row's views that have a mask, by distance; sights has a place for each view. */
-static size_t sights_of(const struct row *row, struct sight *sights)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < row->seen->views_count; i++) {
-        const struct result_view *view = &row->seen->views[i];
-        if (view->masked && view->mask.wrong > 0 && view->distance_m > 0)
-            sights[count++] = (struct sight){view->distance_m, 100 * view->mask.wrong};
-    }
-    qsort(sights, count, sizeof *sights, compare_sights);
-    return count;
-}
-
-static void put_curve(struct plot *plot, const struct row *row)
-{
-    const struct book *book = plot->book;
-    struct sight *sights = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
-    size_t count = sights_of(row, sights);
-    if (!count)
-        return;
-    int block = plot_block(plot, row->label);
-    for (size_t i = 0; i < count; i++)
-        fprintf(plot->dat, "%.9g %.9g\n", sights[i].distance_m, sights[i].percent);
-    plot_row_line(plot, row, block);
-}
-
-enum status plot_masks_distance(const struct book *book, const struct group *group,
-                                const char *folder, struct figure *figure, struct error *error)
-{
-    struct axis x = axis_empty(), y = axis_empty();
-    if (!views_go(book, group, VIEW_DISTANCE) || group->rows_count > LINES_MAX)
-        return STATUS_OK;
-    for (size_t i = 0; i < group->rows_count; i++) {
-        const struct row *row = &book->rows[group->rows[i]];
-        struct sight *sights = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
-        size_t count = sights_of(row, sights);
-        for (size_t k = 0; k < count; k++) {
-            axis_add(&x, sights[k].distance_m);
-            axis_add(&y, sights[k].percent);
-        }
-    }
-    if (x.low > x.high)
-        return STATUS_OK;
-    axis_widen(&x, 0.05, 0.05);
-    axis_widen(&y, 0.08, 0.08);
-    struct plot plot;
-    figure->kind = FIGURE_MASKS_DISTANCE;
-    plot_open(&plot, book, folder, arena_printf(book->arena, "masks-distance-%s", group->slug),
-              group->title);
-    plot_axes(&plot, &x, &y, "median distance to the trees in view [m]",
-              "surface in wrong shadow [%]");
-    fputs("set key maxcols 1\n", plot.gp);
-    for (size_t i = 0; i < group->rows_count; i++)
-        put_curve(&plot, &book->rows[group->rows[i]]);
-    return plot_close(&plot, figure, error);
 }

@@ -82,23 +82,14 @@ static void put_method(struct pairs_plot *pairs, size_t method)
     if (lines < 0)
         return;
     int ends[2] = {put_block(pairs, method, true, false), put_block(pairs, method, false, true)};
-    unsigned color = tint_rgb(tint_method(book, method));
     plot_curve(plot);
     fprintf(plot->gp,
             "\"%s.dat\" index %d with lines linewidth 1.2 dashtype 2 linecolor rgb \"#%06x\" "
             "notitle",
-            plot->name, lines, color);
-    for (int end = 0; end < 2; end++) {
-        plot_curve(plot);
-        fprintf(plot->gp,
-                "\"%s.dat\" index %d with points pointtype %d pointsize 0.9 linecolor rgb "
-                "\"#%06x\" ",
-                plot->name, ends[end], symbol_gnuplot(book, method, end), color);
-        fputs(end ? "title " : "notitle", plot->gp);
-        if (end)
-            plot_text(plot->gp, book->methods[method]);
-    }
-    plot->key_rows++;
+            plot->name, lines, tint_rgb(tint_method(book, method)));
+    for (int end = 0; end < 2; end++)
+        plot_points(plot, ends[end], "with points", method, end,
+                    end ? book->methods[method] : NULL);
 }
 
 enum status plot_pairs(const struct book *book, const struct group *group, const char *folder,

@@ -32,7 +32,6 @@ static void put_block(struct plot *plot, const struct paper_beside *beside, size
     const struct paper_block *block = &beside->blocks[index];
     bool is_first;
     size_t variant = paper_variant_number(book->arena, beside, index, &is_first);
-    size_t method = block->example->method_index;
     int data = plot_block(plot, "printed ratio, ours, low, high");
     size_t count = 0;
     for (size_t i = 0; i < block->lines_count; i++) {
@@ -47,19 +46,8 @@ static void put_block(struct plot *plot, const struct paper_beside *beside, size
     }
     if (!count)
         return;
-    plot_curve(plot);
-    fprintf(plot->gp,
-            "\"%s.dat\" index %d with yerrorbars pointtype %d pointsize 0.9 linewidth 1 linecolor "
-            "rgb \"#%06x\" ",
-            plot->name, data, symbol_gnuplot(book, method, variant == 0),
-            tint_rgb(tint_method(book, method)));
-    if (!is_first) {
-        fputs("notitle", plot->gp);
-        return;
-    }
-    fputs("title ", plot->gp);
-    plot_text(plot->gp, paper_variant(book->arena, block->example));
-    plot->key_rows++;
+    plot_points(plot, data, "with yerrorbars", block->example->method_index, variant == 0,
+                is_first ? paper_variant(book->arena, block->example) : NULL);
 }
 
 enum status plot_paper(const struct book *book, const struct paper_beside *beside,

@@ -266,17 +266,10 @@ static bool method_points(struct roofline *roofline, size_t method, enum limit_r
     }
     if (block < 0)
         return false;
-    plot_curve(plot);
-    fprintf(plot->gp,
-            "\"%s.dat\" index %d with yerrorbars pointtype %d pointsize 0.9 linewidth 1 linecolor "
-            "rgb \"#%06x\" title ",
-            plot->name, block, symbol_gnuplot(book, method, filled),
-            tint_rgb(tint_method(book, method)));
-    plot_text(plot->gp,
-              bound == LIMIT_COUNT
-                  ? book->methods[method]
-                  : arena_printf(book->arena, "%s: %s", book->methods[method], limit_word(bound)));
-    plot->key_rows++;
+    plot_points(plot, block, "with yerrorbars", method, filled,
+                bound == LIMIT_COUNT ? book->methods[method]
+                                     : arena_printf(book->arena, "%s: %s", book->methods[method],
+                                                    limit_word(bound)));
     return true;
 }
 

@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-enum { LINES_MAX = 24 };
-
 /* What stands on the y axis; low and high are its interval. */
 static struct interval figure_of(const struct row *row, enum sweep_axis axis)
 {
@@ -83,7 +81,7 @@ enum status plot_sweep(const struct book *book, const struct sweep *sweep, enum 
             axis_add(&y, value.low);
             axis_add(&y, value.high);
         }
-    if (!(y.low <= y.high) || sweep->curves_count > LINES_MAX)
+    if (!(y.low <= y.high) || sweep->curves_count > PLOT_LINES_MAX)
         return STATUS_OK;
     axis_widen(&x, 0.05, 0.05);
     axis_widen(&y, 0.08, 0.08);
@@ -119,14 +117,7 @@ static void put_memories(struct plot *plot, const struct group *group, size_t me
     }
     if (block < 0)
         return;
-    plot_curve(plot);
-    fprintf(plot->gp,
-            "\"%s.dat\" index %d with points pointtype %d pointsize 0.9 linecolor rgb \"#%06x\" "
-            "title ",
-            plot->name, block, symbol_gnuplot(book, method, true),
-            tint_rgb(tint_method(book, method)));
-    plot_text(plot->gp, book->methods[method]);
-    plot->key_rows++;
+    plot_points(plot, block, "with points", method, true, book->methods[method]);
 }
 
 enum status plot_memory(const struct book *book, const struct group *group, const char *folder,

@@ -81,7 +81,6 @@ static void trade_points(struct trade *trade, size_t method, bool front)
 {
     struct plot *plot = &trade->plot;
     const struct book *book = plot->book;
-    size_t tint = tint_method(book, method);
     int block = -1;
     for (size_t i = 0; i < trade->group->rows_count; i++) {
         const struct row *row = &book->rows[trade->group->rows[i]];
@@ -99,11 +98,7 @@ static void trade_points(struct trade *trade, size_t method, bool front)
     }
     if (block < 0)
         return;
-    plot_curve(plot);
-    fprintf(plot->gp,
-            "\"%s.dat\" index %d using 1:4:2:3:5:6 with xyerrorbars pointtype %d pointsize 0.9 "
-            "linewidth 1 linecolor rgb \"#%06x\" notitle",
-            plot->name, block, symbol_gnuplot(book, method, front), tint_rgb(tint));
+    plot_points(plot, block, "using 1:4:2:3:5:6 with xyerrorbars", method, front, NULL);
 }
 
 static void trade_front(struct trade *trade)
@@ -153,21 +148,15 @@ static void trade_front(struct trade *trade)
 
 static void trade_lines(struct trade *trade)
 {
-    FILE *gp = trade->plot.gp;
-    unsigned muted = tint_rgb(TINT_MUTED);
-    if (!isnan(trade->noise))
-        fprintf(gp,
+    if (!isnan(trade->noise)) {
+        fprintf(trade->plot.gp,
                 "set arrow 1 from graph 0, first %.9g to graph 1, first %.9g nohead dashtype 3 "
                 "linecolor rgb \"#%06x\"\n",
-                trade->noise, trade->noise, muted);
-    if (!isnan(trade->noise))
+                trade->noise, trade->noise, tint_rgb(TINT_MUTED));
         plot_line_note(&trade->plot, trade->noise, "noise of the reference");
+    }
     if (!isnan(trade->floor_ms))
-        fprintf(gp,
-                "set arrow 2 from first %.9g, graph 0 to first %.9g, graph 1 nohead dashtype 3 "
-                "linecolor rgb \"#%06x\"\nset label 2 \"no trees (null)\" at first %.9g, graph "
-                "0.98 right rotate by 90 offset 0.8,0 font \",10\" textcolor rgb \"#%06x\"\n",
-                trade->floor_ms, trade->floor_ms, muted, trade->floor_ms, muted);
+        plot_upright(&trade->plot, 2, trade->floor_ms, "no trees (null)");
 }
 
 static void key_of_methods(struct plot *plot, const bool *used)

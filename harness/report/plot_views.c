@@ -1,13 +1,10 @@
 /* The static plots of error against what the camera changes along its path: its distance to the
  * trees or, where it keeps that, the elevation and the azimuth that it sees them from; and of frame
- * time against the distance. */
+ * time and of wrong shadows against the distance. */
 #include "report/plot.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-/* More lines than this no static plot tells apart. */
-enum { LINES_MAX = 24 };
 
 /* In order of enum view_axis. */
 static const struct {
@@ -20,7 +17,7 @@ static const struct {
 };
 
 struct sight {
-    double at, error, noise; /* noise: of the reference */
+    double at, value, noise; /* noise: of the reference, where the value is an error */
 };
 
 static int compare_sights(const void *a, const void *b)
@@ -69,7 +66,7 @@ static void span_add(struct span *span, const struct sight *sights, size_t count
     bool first = span->noise.count == 0;
     for (size_t i = 0; i < count; i++) {
         axis_add(&span->x, sights[i].at);
-        axis_add(&span->y, sights[i].error);
+        axis_add(&span->y, sights[i].value);
         span->low = fmin(span->low, sights[i].at);
         span->high = fmax(span->high, sights[i].at);
         span->noise.most = fmax(span->noise.most, sights[i].noise);
@@ -116,7 +113,7 @@ static void put_curve(struct plot *plot, const struct row *row, enum view_axis a
         return;
     int block = plot_block(plot, row->label);
     for (size_t i = 0; i < count; i++)
-        fprintf(plot->dat, "%.9g %.9g\n", sights[i].at, fmax(sights[i].error, plot->y.low));
+        fprintf(plot->dat, "%.9g %.9g\n", sights[i].at, fmax(sights[i].value, plot->y.low));
     plot_row_line(plot, row, block);
 }
 
@@ -137,7 +134,7 @@ static void put_noise(struct plot *plot, const struct noise *noise)
 enum status plot_views(const struct book *book, const struct group *group, enum view_axis axis,
                        const char *folder, struct figure *figure, struct error *error)
 {
-    if (!views_go(book, group, axis) || group->rows_count > LINES_MAX)
+    if (!views_go(book, group, axis) || group->rows_count > PLOT_LINES_MAX)
         return STATUS_OK;
     struct span span = span_of(book, group, axis);
     bool noisy = span.noise.most > span.y.low / 20;
@@ -161,9 +158,73 @@ enum status plot_views(const struct book *book, const struct group *group, enum 
     return plot_close(&plot, figure, error);
 }
 
+/* What stands above the distance of a view. */
+struct height {
+    enum figure_kind kind;
+    const char *slug, *label;
+    double (*of)(const struct row *, size_t view); /* not above 0: not known */
+};
+
+/* A row's views of which both are known, by distance; sights has a place for each view. */
+static size_t heights_of(const struct row *row, const struct height *height, struct sight *sights)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < row->seen->views_count; i++) {
+        double at = row->seen->views[i].distance_m, value = height->of(row, i);
+        if (at > 0 && value > 0)
+            sights[count++] = (struct sight){at, value, 0};
+    }
+    qsort(sights, count, sizeof *sights, compare_sights);
+    return count;
+}
+
+static void put_heights(struct plot *plot, const struct row *row, const struct height *height)
+{
+    const struct book *book = plot->book;
+    struct sight *sights = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
+    size_t count = heights_of(row, height, sights);
+    if (!count)
+        return;
+    int block = plot_block(plot, row->label);
+    for (size_t i = 0; i < count; i++)
+        fprintf(plot->dat, "%.9g %.9g\n", sights[i].at, sights[i].value);
+    plot_row_line(plot, row, block);
+}
+
+static enum status plot_heights(const struct book *book, const struct group *group,
+                                const struct height *height, const char *folder,
+                                struct figure *figure, struct error *error)
+{
+    if (!views_go(book, group, VIEW_DISTANCE) || group->rows_count > PLOT_LINES_MAX)
+        return STATUS_OK;
+    struct axis x = axis_empty(), y = axis_empty();
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &book->rows[group->rows[i]];
+        struct sight *sights = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
+        size_t count = heights_of(row, height, sights);
+        for (size_t k = 0; k < count; k++) {
+            axis_add(&x, sights[k].at);
+            axis_add(&y, sights[k].value);
+        }
+    }
+    if (x.low > x.high)
+        return STATUS_OK;
+    axis_widen(&x, 0.05, 0.05);
+    axis_widen(&y, 0.08, 0.08);
+    struct plot plot;
+    figure->kind = height->kind;
+    plot_open(&plot, book, folder, arena_printf(book->arena, "%s-%s", height->slug, group->slug),
+              group->title);
+    plot_axes(&plot, &x, &y, kinds[VIEW_DISTANCE].label, height->label);
+    fputs("set key maxcols 1\n", plot.gp);
+    for (size_t i = 0; i < group->rows_count; i++)
+        put_heights(&plot, &book->rows[group->rows[i]], height);
+    return plot_close(&plot, figure, error);
+}
+
 /* The time of a row's frame at a view, the median over its repetitions: known where each timed just
- * the views that are compared (frames_max of the run is its views). NaN: not known. */
-static double seconds_at(const struct row *row, size_t view)
+ * the views that are compared (frames_max of the run is its views). */
+static double milliseconds_at(const struct row *row, size_t view)
 {
     const struct summary *summary = row->summary;
     double *seconds = malloc((summary->repetitions + summary->failures + 1) * sizeof *seconds);
@@ -175,60 +236,26 @@ static double seconds_at(const struct row *row, size_t view)
     }
     double median = stats_median(seconds, count);
     free(seconds);
-    return median;
-}
-
-/* A row's times by distance; paces has a place for each view. */
-static size_t paces_of(const struct row *row, struct sight *paces)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < row->seen->views_count; i++) {
-        double at = row->seen->views[i].distance_m, seconds = seconds_at(row, i);
-        if (at > 0 && seconds > 0)
-            paces[count++] = (struct sight){at, 1e3 * seconds, 0};
-    }
-    qsort(paces, count, sizeof *paces, compare_sights);
-    return count;
-}
-
-static void put_pace(struct plot *plot, const struct row *row)
-{
-    const struct book *book = plot->book;
-    struct sight *paces = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
-    size_t count = paces_of(row, paces);
-    if (!count)
-        return;
-    int block = plot_block(plot, row->label);
-    for (size_t i = 0; i < count; i++)
-        fprintf(plot->dat, "%.9g %.9g\n", paces[i].at, paces[i].error);
-    plot_row_line(plot, row, block);
+    return 1e3 * median;
 }
 
 enum status plot_pace(const struct book *book, const struct group *group, const char *folder,
                       struct figure *figure, struct error *error)
 {
-    if (!views_go(book, group, VIEW_DISTANCE) || group->rows_count > LINES_MAX)
-        return STATUS_OK;
-    struct axis x = axis_empty(), y = axis_empty();
-    for (size_t i = 0; i < group->rows_count; i++) {
-        const struct row *row = &book->rows[group->rows[i]];
-        struct sight *paces = ARENA_ARRAY(book->arena, struct sight, row->seen->views_count);
-        size_t count = paces_of(row, paces);
-        for (size_t k = 0; k < count; k++) {
-            axis_add(&x, paces[k].at);
-            axis_add(&y, paces[k].error);
-        }
-    }
-    if (x.low > x.high)
-        return STATUS_OK;
-    axis_widen(&x, 0.05, 0.05);
-    axis_widen(&y, 0.08, 0.08);
-    struct plot plot;
-    figure->kind = FIGURE_PACE;
-    plot_open(&plot, book, folder, arena_printf(book->arena, "pace-%s", group->slug), group->title);
-    plot_axes(&plot, &x, &y, kinds[VIEW_DISTANCE].label, "frame time [ms]");
-    fputs("set key maxcols 1\n", plot.gp);
-    for (size_t i = 0; i < group->rows_count; i++)
-        put_pace(&plot, &book->rows[group->rows[i]]);
-    return plot_close(&plot, figure, error);
+    static const struct height pace = {FIGURE_PACE, "pace", "frame time [ms]", milliseconds_at};
+    return plot_heights(book, group, &pace, folder, figure, error);
+}
+
+static double wrong_percent_at(const struct row *row, size_t view)
+{
+    const struct result_view *at = &row->seen->views[view];
+    return at->masked ? 100 * at->mask.wrong : 0;
+}
+
+enum status plot_masks_distance(const struct book *book, const struct group *group,
+                                const char *folder, struct figure *figure, struct error *error)
+{
+    static const struct height wrong = {FIGURE_MASKS_DISTANCE, "masks-distance",
+                                        "surface in wrong shadow [%]", wrong_percent_at};
+    return plot_heights(book, group, &wrong, folder, figure, error);
 }
