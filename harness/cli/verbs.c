@@ -4,7 +4,7 @@
 const struct verb verbs[] = {
     {"run", "time cells, draw and judge their pictures", verb_run},
     {"report", "write the page, plots and tables of a run", verb_report},
-    {"list", "list methods, scenes, metrics or plants", verb_list},
+    {"list", "list methods, scenes, metrics, plants or grammars", verb_list},
     {"render", "draw one view of a cell to an EXR or PNG file", verb_render},
     {"reference", "ray trace one view to an EXR or PNG file", verb_reference},
     {"views", "ray trace pictures with depth around a plant", verb_views},
