@@ -184,6 +184,12 @@ static void test_run__a_folder_with_a_run_is_refused_unless_resumed(void **state
     provenance.reference_error = 0.02;
     assert_int_equal(run_open(folder, &provenance, true, &error), STATUS_INVALID);
     assert_non_null(strstr(error.text, "reference_error"));
+    provenance = somewhere();
+    provenance.settings = "--timeout 3 --threads 1";
+    assert_int_equal(run_open(folder, &provenance, true, &error), STATUS_INVALID);
+    assert_non_null(strstr(error.text, "with the defaults; --threads 1 cannot"));
+    provenance.settings = "--timeout 9"; /* a limit may be raised */
+    assert_int_equal(run_open(folder, &provenance, true, &error), STATUS_OK);
     folder_remove(arena, folder);
     arena_destroy(arena);
 }

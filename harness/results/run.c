@@ -182,6 +182,18 @@ static enum status torn_line_cut(const char *file, struct error *error)
                : STATUS_OK;
 }
 
+/* A run's settings without the limits of a repetition, which may be raised for those that failed.
+ */
+static const char *settings_kept(struct arena *arena, const char *settings)
+{
+    const char *kept = "";
+    char *rest = arena_strdup(arena, settings), *name, *value;
+    while ((name = strsep(&rest, " ")) && (value = strsep(&rest, " ")))
+        if (strcmp(name, "--timeout") != 0 && strcmp(name, "--memory") != 0)
+            kept = arena_printf(arena, "%s%s%s %s", kept, *kept ? " " : "", name, value);
+    return *kept ? kept : "the defaults";
+}
+
 static enum status plan_check(struct arena *arena, const char *folder,
                               const struct provenance *provenance, bool resume, struct error *error)
 {
@@ -215,6 +227,13 @@ static enum status plan_check(struct arena *arena, const char *folder,
                              "%s: %s: was measured with %g; %g cannot be mixed with it, choose "
                              "another --out",
                              folder, settings[i].name, settings[i].before, settings[i].now);
+    const char *before = settings_kept(arena, run->provenance.settings);
+    const char *now = settings_kept(arena, provenance->settings);
+    if (strcmp(before, now) != 0)
+        return error_set(error, STATUS_INVALID,
+                         "%s: was measured with %s; %s cannot be mixed with it, choose another "
+                         "--out",
+                         folder, before, now);
     return STATUS_OK;
 }
 
