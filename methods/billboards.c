@@ -30,7 +30,7 @@ static const struct option table[] = {
            "trees closer to the eye than so many of their radii are drawn by their triangles"),
     OPTION(struct options, depth, 0, 0, 1, "",
            "depth from the picture in each fragment, not from a plane"),
-    SHADOW_CHOICE_OPTIONS(struct options, sun),
+    SHADOW_CHOICE_VOLUME_OPTIONS(struct options, sun),
     OPTION_END,
 };
 /* clang-format on */
@@ -114,17 +114,13 @@ static void draw_trees(struct workspace *workspace, const struct state *state,
                   program == state->hulls ? ATLAS_HULL : state->far_corners, count);
 }
 
-static enum status draw(struct workspace *workspace, void *own, const struct view *view,
-                        struct target *target)
+static void draw_list(struct workspace *workspace, const void *own, const struct view *view,
+                      const struct cull_list *list)
 {
-    struct state *state = own;
-    struct cull_list list;
-    enum status status = impostor_begin(workspace, state->impostor, view, target, &list);
-    if (status != STATUS_OK)
-        return status;
+    const struct state *state = own;
     size_t near =
-        state->hulls ? impostor_near_count(state->impostor, view, &list, IMPOSTOR_HULL_PX, 1) : 0;
-    size_t far = list.count - near;
+        state->hulls ? impostor_near_count(state->impostor, view, list, IMPOSTOR_HULL_PX, 1) : 0;
+    size_t far = list->count - near;
     if (state->impostor->alpha == ATLAS_BLEND) {
         draw_trees(workspace, state, view, state->far_program, 0, far);
         draw_trees(workspace, state, view, state->hulls, far, near);
@@ -132,7 +128,14 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
         draw_trees(workspace, state, view, state->hulls, 0, near);
         draw_trees(workspace, state, view, state->far_program, near, far);
     }
-    return impostor_end(workspace, state->impostor, view, target, "billboards");
+}
+
+static enum status draw(struct workspace *workspace, void *own, const struct view *view,
+                        struct target *target)
+{
+    struct state *state = own;
+    return impostor_picture(workspace, state->impostor, view, target, draw_list, state,
+                            "billboards");
 }
 
 extern const struct method billboards_method;

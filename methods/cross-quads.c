@@ -26,7 +26,7 @@ static const struct option table[] = {
            "trees closer to the eye than so many of their radii are drawn by their triangles"),
     OPTION(struct options, depth, 0, 0, 1, "",
            "depth from the picture in each fragment, not from the plane"),
-    SHADOW_CHOICE_OPTIONS(struct options, sun),
+    SHADOW_CHOICE_VOLUME_OPTIONS(struct options, sun),
     OPTION_END,
 };
 /* clang-format on */
@@ -102,21 +102,24 @@ static void draw_trees(struct workspace *workspace, const struct state *state,
                   count * state->planes * (near && blend ? 2 : 1));
 }
 
+static void draw_list(struct workspace *workspace, const void *own, const struct view *view,
+                      const struct cull_list *list)
+{
+    const struct state *state = own;
+    bool blend = state->impostor->alpha == ATLAS_BLEND;
+    size_t near = impostor_near_count(state->impostor, view, list,
+                                      blend ? whole_area_px : IMPOSTOR_HULL_PX, state->planes);
+    size_t far = list->count - near;
+    draw_trees(workspace, state, view, !blend, 0, blend ? far : near);
+    draw_trees(workspace, state, view, blend, blend ? far : near, blend ? near : far);
+}
+
 static enum status draw(struct workspace *workspace, void *own, const struct view *view,
                         struct target *target)
 {
     struct state *state = own;
-    struct cull_list list;
-    enum status status = impostor_begin(workspace, state->impostor, view, target, &list);
-    if (status != STATUS_OK)
-        return status;
-    bool blend = state->impostor->alpha == ATLAS_BLEND;
-    size_t near = impostor_near_count(state->impostor, view, &list,
-                                      blend ? whole_area_px : IMPOSTOR_HULL_PX, state->planes);
-    size_t far = list.count - near;
-    draw_trees(workspace, state, view, !blend, 0, blend ? far : near);
-    draw_trees(workspace, state, view, blend, blend ? far : near, blend ? near : far);
-    return impostor_end(workspace, state->impostor, view, target, "cross-quads");
+    return impostor_picture(workspace, state->impostor, view, target, draw_list, state,
+                            "cross-quads");
 }
 
 extern const struct method cross_quads_method;

@@ -26,11 +26,12 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
                            const void *values, void **state)
 {
     const struct options *options = values;
-    struct shadow_passes_request request = {.samples = sampling_count(options->samples),
-                                            .triangles_most = options->triangles,
-                                            .azimuths = options->azimuths,
-                                            .detail = options->detail,
-                                            .mixed = options->lookup == 0};
+    struct shadow_passes_request request = {
+        .samples = sampling_count(options->samples),
+        .sun = {.technique = SHADOW_BY_VOLUME, .triangles_most = options->triangles},
+        .azimuths = options->azimuths,
+        .detail = options->detail,
+        .mixed = options->lookup == 0};
     return shadow_passes_prepare(workspace, scene, &request, state);
 }
 

@@ -22,7 +22,7 @@ static const struct option option_table[] = {
     OPTION(struct options, sift, 1, 0, 1, "",
         "triangles that meet no sample are found on the CPU and not drawn; only where GL is software, "
         "with plants without textures, without shadows"),
-    SHADOW_CHOICE_OPTIONS(struct options, sun),
+    SHADOW_CHOICE_VOLUME_OPTIONS(struct options, sun),
     OPTION_END,
 };
 /* clang-format on */

@@ -32,17 +32,19 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
                            const void *values, void **state)
 {
     const struct options *options = values;
-    const struct shadow_choice choice = {
-        .shadow_size = options->size, .cascades = options->cascades, .casters = options->casters};
-    struct sun_shadows_request map = shadow_choice_request(&choice);
-    map.map.bias = SHADOW_BIAS_SLOPE; /* as method shadow-map */
-    map.map.shared = map.own = true;
-    const struct shadow_passes_request request = {.samples = sampling_count(options->samples),
-                                                  .triangles_most = options->triangles,
-                                                  .map = &map,
-                                                  .near_m = options->near_m,
-                                                  .texel_px = options->texel_px,
-                                                  .blend = options->blend};
+    const struct shadow_choice choice = {.shadow = SHADOW_BY_HYBRID,
+                                         .shadow_size = options->size,
+                                         .cascades = options->cascades,
+                                         .casters = options->casters,
+                                         .triangles = options->triangles};
+    struct shadow_passes_request request = {.samples = sampling_count(options->samples),
+                                            .sun = shadow_choice_request(&choice)};
+    request.sun.map.bias = SHADOW_BIAS_SLOPE; /* as method shadow-map */
+    request.sun.own = true;
+    request.sun.volume.behind_px = 0; /* the very triangles that cast */
+    request.sun.near_m = options->near_m;
+    request.sun.texel_px = options->texel_px;
+    request.sun.blend = options->blend;
     return shadow_passes_prepare(workspace, scene, &request, state);
 }
 

@@ -45,6 +45,7 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     static const int bits_of_word[] = {16, 24, 32};
     const struct options *options = values;
     const struct sun_shadows_request shadows = {
+        .technique = SHADOW_BY_MAP,
         .map = {.size_px = options->size,
                 .cascades = options->cascades,
                 .split = options->split,

@@ -25,8 +25,10 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     const struct options *options = values;
     struct shadow_passes_request request = {
         .samples = sampling_count(options->samples),
-        .triangles_most = options->triangles,
-        .volume = {.test = (enum shadow_test)options->test, .triangles = options->volumes}};
+        .sun = {
+            .technique = SHADOW_BY_VOLUME,
+            .triangles_most = options->triangles,
+            .volume = {.test = (enum shadow_test)options->test, .triangles = options->volumes}}};
     return shadow_passes_prepare(workspace, scene, &request, state);
 }
 

@@ -72,16 +72,22 @@ static void test_shadow_choice__each_method_is_shaded_as_traced(void **state)
 {
     (void)state;
     static const struct {
-        const char *method, *options;
+        const char *method, *options, *shadow;
         double wrong, share;
     } rows[] = {
-        {"polygons", "samples=4", 0.03, 0.08},
-        {"billboards", "resolution=64,views=8", 0.045, 0.2},
-        {"billboards", "resolution=64,views=8,alpha=blend", 0.04, 0.18},
-        {"cross-quads", "resolution=64", 0.045, 0.3},
-        {"texels", "resolution=32,slices=16", 0.035, 0.155},
-        {"shaded-texels", "resolution=32,slices=16", 0.035, 0.13},
-        {"jakulin", "resolution=32,slices=16", 0.035, 0.13},
+        {"polygons", "samples=4", "map", 0.03, 0.08},
+        {"polygons", "samples=16", "volume", 0.01, 0.04},
+        {"polygons", "samples=4", "hybrid", 0.03, 0.08},
+        {"billboards", "resolution=64,views=8", "map", 0.045, 0.2},
+        {"billboards", "resolution=64,views=8", "volume", 0.055, 0.24},
+        {"billboards", "resolution=64,views=8", "hybrid", 0.045, 0.2},
+        {"billboards", "resolution=64,views=8,alpha=coverage", "volume", 0.035, 0.2},
+        {"billboards", "resolution=64,views=8,alpha=blend", "map", 0.04, 0.18},
+        {"cross-quads", "resolution=64", "map", 0.045, 0.3},
+        {"cross-quads", "resolution=64", "volume", 0.055, 0.3},
+        {"texels", "resolution=32,slices=16", "map", 0.035, 0.155},
+        {"shaded-texels", "resolution=32,slices=16", "map", 0.035, 0.13},
+        {"jakulin", "resolution=32,slices=16", "map", 0.035, 0.13},
     };
     struct arena *arena = arena_create(0);
     struct error error = {0};
@@ -92,12 +98,14 @@ static void test_shadow_choice__each_method_is_shaded_as_traced(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct frame *picture, *drawn_mask;
         struct mask_error mask;
-        const char *options =
-            arena_printf(arena, "%s,shadow=map,shadow_size=512,cascades=1", rows[i].options);
+        const char *options = arena_printf(arena, "%s,shadow=%s,shadow_size=512,cascades=1",
+                                           rows[i].options, rows[i].shadow);
         drawn(arena, rows[i].method, options, scene, shadowed, &picture, &drawn_mask);
         if (mask_compare(drawn_mask, true_mask, &mask, &error) != STATUS_OK)
             fail_msg("%s: %s", rows[i].method, error.text);
         double share = boxes_apart(picture, truth) / boxes_apart(unshaded, truth);
+        printf("# %s:%s: wrong %.4f (leak %.4f, acne %.4f), %.3f of the error without\n",
+               rows[i].method, options, mask.wrong, mask.leak, mask.acne, share);
         if (!(mask.wrong < rows[i].wrong && share < rows[i].share))
             fail_msg("%s: wrong %g (leak %g, acne %g) of %g, error %g of that without shadows",
                      rows[i].method, mask.wrong, mask.leak, mask.acne, mask.dark, share);
@@ -139,6 +147,84 @@ static void test_shadow_choice__every_kind_of_caster_shades_as_traced(void **sta
     arena_destroy(arena);
 }
 
+/* Under a sun along the ground, at the zenith and in the picture: a volume a little behind what
+ * casts it shades as one that stands at it, and so it does what is drawn at a lower level. */
+static void test_shadow_choice__volumes_of_polygons_are_those_of_shadow_volume(void **state)
+{
+    (void)state;
+    static const float elevations[] = {0, 0.02f, 0.6f, 1.5707963f};
+    struct arena *arena = arena_create(0);
+    for (size_t sun = 0; sun < sizeof elevations / sizeof *elevations; sun++) {
+        struct scene *scene = world_of(arena, 3.5f);
+        struct frame *pictures[4], *masks[4];
+        scene->sun.elevation_rad = elevations[sun];
+        scene->tree_reach_m = 9;
+        drawn(arena, "shadow-volume", "samples=4", scene, shadowed, &pictures[0], &masks[0]);
+        drawn(arena, "polygons", "samples=4,shadow=volume,error_px=0.1", scene, shadowed,
+              &pictures[1], &masks[1]);
+        drawn(arena, "polygons", "samples=4,shadow=volume,error_px=4", scene, shadowed,
+              &pictures[2], &masks[2]);
+        drawn(arena, "polygons", "samples=4,shadow=map,error_px=4", scene, shadowed, &pictures[3],
+              &masks[3]);
+        int apart = 0;
+        for (size_t i = 0; i < 4 * TREE_PIXELS; i++)
+            apart += i % 4 < 3 && fabsf(masks[0]->rgba[i] - masks[1]->rgba[i]) > 0.01f;
+        double picture = boxes_apart(pictures[0], pictures[1]);
+        double lit = tree_mean(masks[2], 0), more = lit - tree_mean(masks[3], 0);
+        printf("# sun %zu: %d values of the mask differ, the picture by %.5f; of coarse leaves "
+               "%.4f are lit, %.4f more than by a map\n",
+               sun, apart, picture, lit, more);
+        assert_true(apart < 15 && picture < 1e-3 && fabs(more) < 0.01);
+    }
+    arena_destroy(arena);
+}
+
+/* One line that says what, its value, and what is allowed. */
+static void assert_refused(struct arena *arena, const struct scene *scene, const char *method,
+                           const char *options, const char *line)
+{
+    struct error error = {0};
+    struct studio studio = {.method = tree_method(method),
+                            .workspace = {.arena = arena,
+                                          .effects = shadowed,
+                                          .format = TARGET_RGBA32F,
+                                          .error = &error,
+                                          .threads = 2}};
+    void *values = arena_alloc(arena, 1, studio.method->options_size);
+    options_default(studio.method->options, values);
+    assert_int_equal(gl_context_create(NULL, 2, &studio.workspace.gl, &error), STATUS_OK);
+    enum status status = options_parse(studio.method->options, options, values, &error);
+    if (status == STATUS_OK)
+        status = studio.method->prepare(&studio.workspace, scene, values, &studio.state);
+    assert_int_not_equal(status, STATUS_OK);
+    assert_string_equal(error.text, line);
+    gl_context_destroy(studio.workspace.gl);
+}
+
+static void test_shadow_choice__what_volumes_cannot_shade_is_refused_in_a_line(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct scene *scene = world_of(arena, 1);
+    assert_refused(arena, scene, "texels", "shadow=volume",
+                   "shadow: 'volume' is not one of none|map");
+    assert_refused(arena, scene, "billboards", "alpha=blend,shadow=volume",
+                   "shadow=volume: with alpha=blend a pixel has many depths, volumes tell of one; "
+                   "allowed: alpha=test or coverage, or shadow=none or map");
+    scene->terrain.detail_px = 2;
+    assert_refused(arena, scene, "polygons", "shadow=hybrid",
+                   "terrain.detail_px: 2; allowed by shadow volumes: 0, every triangle is drawn "
+                   "and casts");
+    scene->terrain.detail_px = 0;
+    scene->instances_count = 21; /* of 508 triangles */
+    scene->instances = ARENA_ARRAY(arena, struct instance, scene->instances_count);
+    for (size_t i = 0; i < scene->instances_count; i++)
+        scene->instances[i].scale = scene->instances[i].stretch = 1;
+    assert_refused(arena, scene, "cross-quads", "shadow=volume,triangles=10000",
+                   "trees: 10668 triangles together; allowed: 10000, by option triangles");
+    arena_destroy(arena);
+}
+
 static void test_shadow_choice__none_draws_the_same_whether_shadows_are_wanted_or_not(void **state)
 {
     (void)state;
@@ -162,6 +248,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shadow_choice__each_method_is_shaded_as_traced),
         cmocka_unit_test(test_shadow_choice__every_kind_of_caster_shades_as_traced),
+        cmocka_unit_test(test_shadow_choice__volumes_of_polygons_are_those_of_shadow_volume),
+        cmocka_unit_test(test_shadow_choice__what_volumes_cannot_shade_is_refused_in_a_line),
         cmocka_unit_test(test_shadow_choice__none_draws_the_same_whether_shadows_are_wanted_or_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

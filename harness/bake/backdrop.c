@@ -237,8 +237,8 @@ enum status backdrop_skyline(struct workspace *workspace, struct backdrop *backd
     gl->TextureParameteri(backdrop->skylines, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     const char *defines = arena_printf(workspace->arena, "SKYLINE 1\n%s",
                                        terrain_defines(workspace, backdrop->scene));
-    return gl_program(gl, "skyline", backdrop_glsl, defines, &backdrop->skyline_program,
-                      workspace->error);
+    return shadow_receiver_program(workspace, backdrop->shadows, "skyline", backdrop_glsl, defines,
+                                   &backdrop->skyline_program);
 }
 
 static void skyline_uniforms(struct gl *gl, const struct backdrop *backdrop,

@@ -100,7 +100,7 @@ void main()
     sun_visibility = in_shadow() ? 0.0 : 1.0;
 #endif
 #ifdef SHADOWED
-    sun_visibility = SHADOW_VISIBILITY(position_m, shading_normal);
+    sun_visibility *= SHADOW_VISIBILITY(position_m, shading_normal);
 #endif
 #ifdef SMOOTH
     vec3 radiance = in_shade + in_sun * max(0.0, cosine);

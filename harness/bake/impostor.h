@@ -23,6 +23,11 @@
 /* Rotations of a tree that its light is computed for: 1.4 degrees apart. */
 enum { IMPOSTOR_SUN_STEPS = 256 };
 
+/* As impostor.glsl reads it. */
+struct impostor_sunlight {
+    float factors[4], rest, unused[3];
+};
+
 struct impostor {
     const struct scene *scene;
     const struct scene *tall; /* the same trees, of species as high as they are: impostor_tall.h */
@@ -41,9 +46,9 @@ struct impostor {
     GLuint sunlights_buffer; /* pictures x IMPOSTOR_SUN_STEPS: what the sun makes of the channels */
     float sun_direction[3];  /* that sunlights_buffer holds; zeros: none yet */
     size_t fans_quad,
-        fans_hull; /* how many fans of 4 and of ATLAS_HULL corners the index buffer holds */
-    struct target multisampled; /* of ATLAS_COVERAGE; made at the first draw */
-    float area_m2;              /* mean silhouette area of the trees */
+        fans_hull;      /* how many fans of 4 and of ATLAS_HULL corners the index buffer holds */
+    struct target twin; /* of ATLAS_COVERAGE; made at the first draw */
+    float area_m2;      /* mean silhouette area of the trees */
 };
 
 struct impostor_request {
@@ -71,11 +76,16 @@ enum status impostor_program(struct workspace *workspace, const struct impostor 
                              const char *name, const char *source, const char *defines,
                              GLuint *program);
 
-/* Binds target (or its multisampled twin), draws the backdrop, culls, sorts (back to
- * front for blending, else front to back) and uploads the order. Near trees are drawn as triangles,
- * before the others, or after them where those are blended. Returns the list of the others. */
-enum status impostor_begin(struct workspace *workspace, struct impostor *impostor,
-                           const struct view *view, struct target *target, struct cull_list *list);
+/* Draws a method's trees of a list with impostor_use and impostor_draw. */
+typedef void impostor_trees_draw(struct workspace *workspace, const void *state,
+                                 const struct view *view, const struct cull_list *list);
+/* A picture, a method's draw: backdrop, near trees as triangles (before the others, or after them
+ * where those are blended), the others, culled and sorted (back to front for blending, else front
+ * to back), in the passes that its shadows want. Leaves the state that backdrop_draw leaves. where:
+ * for an error of OpenGL. */
+enum status impostor_picture(struct workspace *workspace, struct impostor *impostor,
+                             const struct view *view, struct target *target,
+                             impostor_trees_draw *draw, const void *state, const char *where);
 
 /* Uses a program, with all uniforms and buffers set, trees [first, first + count) of the list to
  * come. */
@@ -94,9 +104,5 @@ enum { IMPOSTOR_HULL_PX = 6000 };
  * than there are hulls for, hulls_each a tree. */
 size_t impostor_near_count(const struct impostor *impostor, const struct view *view,
                            const struct cull_list *list, float area_px, size_t hulls_each);
-
-/* Ends the picture and restores the state that backdrop_draw leaves. */
-enum status impostor_end(struct workspace *workspace, const struct impostor *impostor,
-                         const struct view *view, struct target *target, const char *where);
 
 #endif

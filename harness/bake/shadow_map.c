@@ -113,6 +113,8 @@ enum status shadow_map_prepare(struct workspace *workspace, const struct scene *
     struct shadow_map *map = *result = ARENA_NEW(workspace->arena, struct shadow_map);
     map->scene = scene;
     map->options = *options;
+    if (options->cascades == 0)
+        return STATUS_OK;
     if (options->foliage != SHADOW_SOLID)
         prepare_layers(gl, map);
     prepare_maps(gl, map);
@@ -125,10 +127,14 @@ enum status shadow_map_program(struct workspace *workspace, const struct shadow_
                                GLuint *program)
 {
     const struct shadow_options *options = &map->options;
-    const char *all = arena_printf(
-        workspace->arena, "SHADOWED 1\nBIAS %d\nRADIUS %d\nLINEAR %d\nLAYERS %d\n%s%s",
-        (int)options->bias, options->radius, options->linear && !map->layers,
-        shadow_layers(options), options->shared ? "SHARED 1\n" : "", defines ? defines : "");
+    const char *all =
+        options->cascades == 0
+            ? arena_printf(workspace->arena, "SHADOWED 1\nELSEWHERE 1\n%s", defines ? defines : "")
+            : arena_printf(workspace->arena,
+                           "SHADOWED 1\nBIAS %d\nRADIUS %d\nLINEAR %d\nLAYERS %d\n%s%s",
+                           (int)options->bias, options->radius, options->linear && !map->layers,
+                           shadow_layers(options), options->shared ? "SHARED 1\n" : "",
+                           defines ? defines : "");
     const char *text = arena_printf(workspace->arena, "%s\n%s", shadow_map_glsl, source);
     return gl_program(workspace->gl, name, text, all, program, workspace->error);
 }
@@ -256,6 +262,8 @@ enum status shadow_map_update(struct workspace *workspace, struct shadow_map *ma
                               const struct backdrop *backdrop)
 {
     struct gl *gl = workspace->gl;
+    if (map->options.cascades == 0)
+        return STATUS_OK;
     bool changed = fits_find(map, view);
     changed |= backdrop_cast_view(workspace, backdrop, view);
     if (!changed && !workspace->counted)
@@ -296,9 +304,11 @@ float shadow_map_fine_m(const struct shadow_map *map, const struct view *view, f
 void shadow_receiver_uniforms(struct workspace *workspace, const struct shadow_map *map,
                               GLuint program)
 {
-    if (!map)
-        return;
     struct gl *gl = workspace->gl;
+    if (map && map->options.cascades == 0)
+        gl->Uniform1f(gl_uniform(gl, program, "shadow_lit"), map->share.lit);
+    if (!map || map->options.cascades == 0)
+        return;
     float matrices[SHADOW_CASCADES_MAX][16] = {{0}}, texels[SHADOW_CASCADES_MAX][3] = {{0}};
     float ends[4] = {0};
     for (int c = 0; c < map->options.cascades; c++) {

@@ -1,7 +1,21 @@
 // Receives a shadow map: shadow_visibility(). Stands before a receiver's stages. BIAS: 0 none, 1 constant, 2 by slope,
 // 3 receiver plane, 4 along the normal. RADIUS: (2 RADIUS + 1)^2 taps. LINEAR: taps are bilinear. LAYERS: 0 a depth is
 // solid, else the map holds the share of a texel that is covered to so many depths behind the first. SHARED: what is
-// near is another's.
+// near is another's. ELSEWHERE: there is no map, all is another's.
+#ifdef ELSEWHERE
+uniform float shadow_lit;
+#define SHADOW_VISIBILITY(position, normal) shadow_lit
+
+float shadow_visibility(vec3 position_m, vec3 normal)
+{
+    return shadow_lit;
+}
+
+float shadow_visibility_within(vec3 position_m, float within_m)
+{
+    return shadow_lit;
+}
+#else
 layout(binding = 6) uniform sampler2DArrayShadow shadow_maps;
 #if LAYERS > 0
 layout(binding = 5) uniform sampler2DArray shadow_first;
@@ -188,3 +202,4 @@ float shadow_of_pixel(vec3 position_m, vec3 smooth_normal, vec3 right_m, vec3 do
 {
     return shadow_shared(position_m, shadow_facet(right_m, down_m, position_m, smooth_normal), right_m, down_m);
 }
+#endif

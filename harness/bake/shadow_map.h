@@ -21,7 +21,7 @@ enum shadow_bias {
 enum shadow_foliage { SHADOW_SOLID, SHADOW_ALPHA, SHADOW_DEEP };
 
 struct shadow_options {
-    int size_px, cascades;
+    int size_px, cascades; /* cascades 0: no map, all is what shadow_map_share says */
     float split; /* lambda of shadow_splits */
     bool stable, perspective, linear;
     int radius; /* (2 radius + 1)^2 taps */

@@ -1,4 +1,4 @@
-/* Sky light, volumes, sun light; beyond the volumes, a map. */
+/* All triangles in the passes of volumes; horizon maps. */
 #include "bake/shadow_passes.h"
 #include "bake/backdrop.h"
 #include "bake/shadow_trees.h"
@@ -7,9 +7,7 @@ struct shadow_passes {
     struct backdrop *backdrop;
     struct sampling *sampling;
     struct shadow_trees *trees;
-    struct shadow_volume *volume; /* NULL: nothing casts one */
-    struct sun_shadows *map;      /* NULL: volumes shade everything */
-    float near_m, texel_px, blend;
+    struct sun_shadows *sun; /* NULL: none */
 };
 
 /* As many parts as are wanted and texels there is room for. */
@@ -23,31 +21,16 @@ static int parts_of(const struct terrain *terrain, const struct shadow_passes_re
     return parts;
 }
 
-/* Triangles of a relief that casts volumes, at most: neighbours of each are kept. */
-enum { RELIEF_MOST = 1 << 22 };
-
-/* A horizon is kept for every sample of the relief, and a volume stands behind the very triangles
- * that are drawn: no levels of detail. */
-static enum status check_relief(struct workspace *workspace, const struct terrain *terrain,
-                                bool mapped)
-{
-    double triangles = 2.0 * (terrain->samples_x - 1) * (terrain->samples_z - 1);
-    if (terrain->detail_px > 0)
-        return error_set(workspace->error, STATUS_UNSUPPORTED,
-                         "terrain.detail_px: %g; allowed by %s: 0, every triangle is drawn%s",
-                         (double)terrain->detail_px, mapped ? "horizon maps" : "shadow volumes",
-                         mapped ? "" : " and casts");
-    if (!mapped && triangles > RELIEF_MOST)
-        return error_set(workspace->error, STATUS_UNSUPPORTED,
-                         "terrain: %.0f triangles; allowed by shadow volumes: %d", triangles,
-                         RELIEF_MOST);
-    return STATUS_OK;
-}
-
+/* A horizon is kept for every sample of the relief: no levels of detail. */
 static enum status prepare_skyline(struct workspace *workspace, const struct scene *scene,
                                    const struct shadow_passes_request *request,
                                    struct backdrop *backdrop)
 {
+    if (scene->terrain.detail_px > 0)
+        return error_set(workspace->error, STATUS_UNSUPPORTED,
+                         "terrain.detail_px: %g; allowed by horizon maps: 0, every triangle is "
+                         "drawn",
+                         (double)scene->terrain.detail_px);
     struct arena *passing = arena_create(0);
     struct skyline skyline;
     struct terrain fine;
@@ -58,106 +41,49 @@ static enum status prepare_skyline(struct workspace *workspace, const struct sce
     return status;
 }
 
-static enum status prepare_shadows(struct workspace *workspace, const struct scene *scene,
-                                   const struct shadow_passes_request *request,
-                                   struct shadow_passes *passes)
-{
-    bool relief = scene->terrain.samples_x > 1, mapped = relief && request->azimuths > 0;
-    struct shadow_volume_request volume = request->volume;
-    enum status status = relief ? check_relief(workspace, &scene->terrain, mapped) : STATUS_OK;
-    volume.trees_alone = mapped;
-    if (status == STATUS_OK && mapped)
-        status = prepare_skyline(workspace, scene, request, passes->backdrop);
-    if (status != STATUS_OK || !(scene->instances_count || (relief && !mapped)))
-        return status;
-    sampling_stencil(passes->sampling);
-    return shadow_volume_prepare(workspace, scene, &volume, &passes->volume);
-}
-
 enum status shadow_passes_prepare(struct workspace *workspace, const struct scene *scene,
                                   const struct shadow_passes_request *request, void **passes)
 {
     struct shadow_passes *made = *passes = ARENA_NEW(workspace->arena, struct shadow_passes);
+    struct sun_shadows_request sun = request->sun;
     enum status status = backdrop_prepare(workspace, scene, &made->backdrop);
     bool shadows = workspace->effects & EFFECT_SUN_SHADOWS;
-    made->near_m = request->near_m;
-    made->texel_px = request->texel_px;
-    made->blend = request->blend;
+    bool mapped = shadows && scene->terrain.samples_x > 1 && request->azimuths > 0;
+    sun.volume.trees_alone = mapped;
     if (status == STATUS_OK)
         status = sampling_prepare(workspace, request->samples, &made->sampling);
-    if (status == STATUS_OK && shadows && request->map)
-        status = sun_shadows_prepare(workspace, scene, request->map, made->backdrop, &made->map);
-    if (status == STATUS_OK)
-        status = shadow_trees_prepare(workspace, scene, request->triangles_most,
-                                      sun_shadows_map(made->map), &made->trees);
     if (status == STATUS_OK && shadows)
-        status = prepare_shadows(workspace, scene, request, made);
+        status = sun_shadows_prepare(workspace, scene, &sun, made->backdrop, &made->sun);
+    if (status == STATUS_OK && mapped)
+        status = prepare_skyline(workspace, scene, request, made->backdrop);
+    if (status == STATUS_OK)
+        status = shadow_trees_prepare(workspace, scene, sun.triangles_most,
+                                      sun_shadows_map(made->sun), &made->trees);
+    if (status == STATUS_OK && sun_shadows_count(made->sun))
+        sampling_stencil(made->sampling);
     return status;
 }
 
-static void draw_surfaces(struct workspace *workspace, struct shadow_passes *passes,
-                          const struct view *view)
+static enum status draw_surfaces(struct workspace *workspace, void *state, const struct view *view)
 {
+    struct shadow_passes *passes = state;
     backdrop_draw(workspace, passes->backdrop, view);
     shadow_trees_draw(workspace, passes->trees, view);
-}
-
-/* To which depth volumes shade, m; 0: they need not be drawn. */
-static float depth_of_volumes(const struct shadow_passes *passes, const struct view *view)
-{
-    const struct shadow_map *map = sun_shadows_map(passes->map);
-    float deep_m = passes->near_m;
-    if (!passes->volume)
-        return 0;
-    if (!map)
-        return INFINITY;
-    if (!(deep_m > 0))
-        deep_m = shadow_map_fine_m(map, view, passes->texel_px);
-    return deep_m > view->near_m ? deep_m : 0;
-}
-
-/* lit: where no volume is, else in one. */
-static void share_with_map(struct shadow_passes *passes, float deep_m, bool lit)
-{
-    static const float step = 1e-4f; /* of the depth, that a blend takes at least */
-    if (passes->map)
-        sun_shadows_share(passes->map,
-                          (struct shadow_share){deep_m * (1 - fmaxf(passes->blend, step)),
-                                                deep_m > 0 ? deep_m : 1e-30f, lit});
-}
-
-/* Surfaces out of the sun, but for what the map says, then the volumes' count: a little beyond
- * their depth, which the middle of a pixel's triangle may be before and its samples behind. */
-static void draw_volumes(struct workspace *workspace, struct shadow_passes *passes,
-                         const struct view *view, float deep_m)
-{
-    static const float beyond = 1.25f;
-    shadow_volume_extrude(workspace, passes->volume, view, beyond * deep_m);
-    struct view dark = *view; /* N.L is 0 */
-    dark.sun_direction[0] = dark.sun_direction[1] = dark.sun_direction[2] = 0;
-    share_with_map(passes, deep_m, false);
-    draw_surfaces(workspace, passes, passes->map ? view : &dark);
-    shadow_volume_count(workspace, passes->volume, view, beyond * deep_m);
+    return STATUS_OK;
 }
 
 enum status shadow_passes_draw(struct workspace *workspace, void *state, const struct view *view,
                                struct target *target)
 {
     struct shadow_passes *passes = state;
-    struct view lit = sampling_view(passes->sampling, view);
-    enum status status = sun_shadows_update(workspace, passes->map, &lit, NULL);
+    struct view drawn = sampling_view(passes->sampling, view);
+    enum status status = sun_shadows_update(workspace, passes->sun, &drawn, NULL);
     if (status == STATUS_OK)
-        status = sampling_begin(workspace, passes->sampling, target, view, &lit);
+        status = sampling_begin(workspace, passes->sampling, target, view, &drawn);
+    if (status == STATUS_OK)
+        status = sun_shadows_draw(workspace, passes->sun, view, &drawn, draw_surfaces, passes);
     if (status != STATUS_OK)
         return status;
-    const float deep_m = depth_of_volumes(passes, view);
-    if (deep_m > 0) {
-        shadow_volume_view(&lit);
-        draw_volumes(workspace, passes, &lit, deep_m);
-    }
-    share_with_map(passes, deep_m, true);
-    draw_surfaces(workspace, passes, &lit);
-    shadow_volume_end(workspace);
     sampling_end(workspace, passes->sampling, target);
     return gl_check(workspace->gl, "shadows", workspace->error);
 }

@@ -1,30 +1,23 @@
-/* The three passes of a scene with shadow volumes (Abderrahmani 2018, 5.1): all surfaces in the
- * sky's light, volumes into the stencil buffer, all surfaces again in the sun's light where none is
- * counted. Of the relief also by horizon maps. With a shadow map, volumes shade what is near: the
- * first pass has the map's light beyond, and the third one what both say of the band between. */
+/* A scene whose trees are all their triangles in the world (bake/shadow_trees.h), with shadow
+ * volumes that stand at these very triangles, or with volumes near by and a map beyond: the passes
+ * of bake/shadow_choice.h. The relief's own shadows also by horizon maps. */
 #ifndef TREELINE_BAKE_SHADOW_PASSES_H
 #define TREELINE_BAKE_SHADOW_PASSES_H
 
 #include "bake/sampling.h"
 #include "bake/shadow_choice.h"
-#include "bake/shadow_volume.h"
 
 struct shadow_passes_request {
-    int samples;        /* a pixel: 1, 4 or 16 */
-    int triangles_most; /* of all trees together */
-    struct shadow_volume_request volume;
+    int samples; /* a pixel: 1, 4 or 16 */
+    struct sun_shadows_request
+        sun;      /* SHADOW_BY_VOLUME or SHADOW_BY_HYBRID, whose casters are own */
     int azimuths; /* of horizon maps, and then the relief casts no volume; 0: none */
     int detail;   /* samples of them to one of the relief along each axis, at most */
     bool mixed;   /* of the two nearest azimuths */
-    /* Of what is deeper than near_m; NULL: none. Its options are shared, its casters own. */
-    const struct sun_shadows_request *map;
-    float near_m;   /* volumes shade what is nearer; 0: to where the map's texels are as small as */
-    float texel_px; /* so many pixels */
-    float blend;    /* share of that depth, 0..1, before whose end both count */
 };
 
 /* clang-format off */
-/* The row of a method's table for triangles_most. */
+/* The row of a method's table for sun.triangles_most. */
 #define SHADOW_PASSES_TRIANGLES(type)                                                              \
     OPTION(type, triangles, 524288, 10000, 8388608, "",                                            \
         "that all trees may have together; more are refused: each is drawn twice and casts a volume in every frame")

@@ -45,13 +45,18 @@ struct filling {
     size_t vertices_count, indices_count;
 };
 
-static enum status check_room(struct workspace *workspace, const struct shadow_trees *trees,
-                              int triangles_most)
+enum status shadow_trees_check(struct workspace *workspace, const struct scene *scene,
+                               int triangles_most)
 {
-    const struct scene *scene = trees->scene;
     double triangles = 0;
-    for (size_t i = 0; i < scene->instances_count; i++)
-        triangles += (double)trees->meshes[scene->instances[i].species]->triangles_count;
+    for (size_t i = 0; i < scene->instances_count; i++) {
+        const struct mesh *mesh;
+        enum status status =
+            plant_mesh(scene->species[scene->instances[i].species].plant, &mesh, workspace->error);
+        if (status != STATUS_OK)
+            return status;
+        triangles += (double)mesh->triangles_count;
+    }
     if (triangles <= triangles_most)
         return STATUS_OK;
     return error_set(workspace->error, STATUS_UNSUPPORTED,
@@ -219,7 +224,7 @@ enum status shadow_trees_prepare(struct workspace *workspace, const struct scene
             made->bounds[s] = cull_bound_of(made->meshes[s]);
     }
     if (status == STATUS_OK)
-        status = check_room(workspace, made, triangles_most);
+        status = shadow_trees_check(workspace, scene, triangles_most);
     bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
     for (int textured = 0; textured < 2 && status == STATUS_OK; textured++)
         status = shadow_receiver_program(workspace, map, "trees", shadow_volume_glsl,

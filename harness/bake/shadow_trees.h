@@ -8,8 +8,10 @@
 struct shadow_trees;
 struct shadow_map;
 
-/* map: whose shadows the trees receive; NULL: none. STATUS_UNSUPPORTED where the trees have more
- * triangles together than triangles_most. */
+/* STATUS_UNSUPPORTED where the trees have more triangles together than triangles_most. */
+enum status shadow_trees_check(struct workspace *workspace, const struct scene *scene,
+                               int triangles_most);
+/* map: whose shadows the trees receive; NULL: none. Checked as above. */
 enum status shadow_trees_prepare(struct workspace *workspace, const struct scene *scene,
                                  int triangles_most, const struct shadow_map *map,
                                  struct shadow_trees **trees);

@@ -45,6 +45,23 @@ static void place_points(struct shadow_volume *volume)
     }
 }
 
+/* Where volumes begin behind what casts: never closer than floats of such places tell. */
+static void place_behind(struct shadow_volume *volume)
+{
+    const struct shadow_volume_request *request = &volume->request;
+    float largest_m = 0, radius_m = 0;
+    if (!(request->behind_px > 0 || request->behind_radii > 0))
+        return;
+    for (size_t p = 0; p < volume->pieces_count; p++) {
+        const struct shadow_piece *piece = &volume->pieces[p];
+        for (int axis = 0; axis < 3; axis++)
+            largest_m = fmaxf(largest_m, fabsf(piece->center_m[axis]) + piece->radius_m);
+        if (piece->instance)
+            radius_m = fmaxf(radius_m, piece->radius_m);
+    }
+    volume->behind_m = fmaxf(0x1p-20f * largest_m, request->behind_radii * radius_m);
+}
+
 /* Room for points, as they are, and for their ends. */
 static void upload_points(struct gl *gl, struct shadow_volume *volume)
 {
@@ -104,6 +121,7 @@ enum status shadow_volume_prepare(struct workspace *workspace, const struct scen
     made->ground = shadow_floor_create(workspace->arena, &scene->terrain);
     made->places_m = arena_alloc(workspace->arena, made->points_count, sizeof *made->places_m);
     place_points(made);
+    place_behind(made);
     upload_points(gl, made);
     made->vertices = gl_vertex_array(gl);
     gl->VertexArrayVertexBuffer(made->vertices, 0, made->points, 0, sizeof(float[4]));

@@ -41,12 +41,16 @@ uniform int points;
 uniform bool endless;  // all ends are at infinity
 uniform vec3 away;     // from the sun
 uniform float deep_m;  // what is deeper is dropped; 0: nothing
+uniform vec3 behind;   // volumes begin so far behind what casts: m, or m at a depth of 1 m; more, m at 1 m, by its square
 
 void main()
 {
     vec4 at = endless && gl_VertexID >= points ? vec4(away, 0.0) : position;
     // the very expression that surfaces are drawn with, so that a cap has its surface's depth
     vec4 near = view_projection * vec4(at.xyz, 1.0);
+    if (behind.x > 0.0 && gl_VertexID < points)
+        near = view_projection *
+               vec4(at.xyz + away * (max(behind.x, behind.y * near.w) + behind.z * near.w * near.w), 1.0);
     gl_Position = at.w > 0.0 ? near : view_projection * vec4(at.xyz, 0.0);
     gl_ClipDistance[0] = deep_m > 0.0 ? deep_m * at.w - gl_Position.w : 0.0;
 }

@@ -22,6 +22,11 @@ struct shadow_volume_request {
     enum shadow_test test;
     bool trees_alone; /* the terrain casts none */
     bool triangles;   /* each triangle has its own volume, without silhouettes */
+    /* Where what is drawn is not the very triangles that cast, volumes begin behind them, away from
+     * the sun, so that no surface shades itself: as far as the larger of both, and what floats and
+     * depths do not resolve. 0 both: at them. */
+    float behind_px;    /* pixels, at a caster's depth */
+    float behind_radii; /* of the largest tree's */
 };
 
 struct shadow_volume;
@@ -39,8 +44,9 @@ void shadow_volume_extrude(struct workspace *workspace, struct shadow_volume *vo
 /* The far plane is moved to infinity: what must be drawn with volumes, surfaces too. */
 void shadow_volume_view(struct view *view);
 /* Clears the stencil of the bound framebuffer and counts into it. Surfaces must be drawn, with the
- * same view and as the very triangles that cast; depth is not changed. Leaves the stencil test on,
- * passing where the count is 0 and the sample is no deeper than deep_m, until shadow_volume_end. */
+ * same view and, where volumes begin at what casts, as its very triangles; depth is not changed.
+ * Leaves the stencil test on, passing where the count is 0 and the sample is no deeper than deep_m,
+ * until shadow_volume_end. */
 void shadow_volume_count(struct workspace *workspace, const struct shadow_volume *volume,
                          const struct view *view, float deep_m);
 void shadow_volume_end(struct workspace *workspace);

@@ -173,6 +173,9 @@ static void mark_beyond(struct gl *gl, const struct shadow_volume *volume, const
     cover(gl, volume, 1 - 2 * view->near_m / deep_m);
 }
 
+/* Of a depth buffer: twice what it resolves at 1 m with a near plane there. */
+static const float depth_step = 0x1p-23f;
+
 static void count_pieces(struct workspace *workspace, const struct shadow_volume *volume,
                          const struct view *view, float deep_m)
 {
@@ -191,6 +194,8 @@ static void count_pieces(struct workspace *workspace, const struct shadow_volume
     gl->Uniform3f(gl_uniform(gl, volume->program, "away"), -volume->sun[0], -volume->sun[1],
                   -volume->sun[2]);
     gl->Uniform1i(gl_uniform(gl, volume->program, "endless"), endless);
+    gl->Uniform3f(gl_uniform(gl, volume->program, "behind"), volume->behind_m,
+                  volume->request.behind_px / cull_focal_px(view), depth_step / view->near_m);
     for (int pass = 0; pass < 2 * HALVES; pass++) {
         tally.half = pass / 2;
         tally.z_fail = pass % 2;

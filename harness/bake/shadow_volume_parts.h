@@ -30,7 +30,8 @@ struct shadow_volume {
     size_t pieces_count, points_count;
     struct shadow_piece *pieces;
     struct shadow_floor *ground;
-    float (*places_m)[3];                                     /* of points, in the world */
+    float (*places_m)[3]; /* of points, in the world */
+    float behind_m;       /* volumes begin so far behind what casts, at least; 0: at it */
     GLuint program, whole_program, vertices, points, indices; /* whole: all of the picture */
     size_t room[STRETCHES], offset[STRETCHES]; /* indices that may come; begin in the buffer */
     size_t indices_room;                       /* of the buffer */
