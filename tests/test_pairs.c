@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void add(struct arena *arena, struct run *run, const char *method, const char *options,
-                int round, double seconds)
+static struct result *add(struct arena *arena, struct run *run, const char *method,
+                          const char *options, int round, double seconds)
 {
     struct result *result = tiny_result(arena, run, method, options, 4, round);
     void *values = arena_alloc(arena, 1, result->cell.method->options_size);
@@ -18,6 +18,7 @@ static void add(struct arena *arena, struct run *run, const char *method, const 
     result->effects = method_effects(result->cell.method, values, EFFECTS_ALL);
     result->scene_effects = EFFECTS_ALL;
     result->frame_seconds[0] = seconds;
+    return result;
 }
 
 static struct shadow_pair *found(struct arena *arena, struct run *run, struct book **book,
@@ -62,6 +63,33 @@ static void test_pairs__a_switch_and_what_depends_on_it_may_differ_and_nothing_e
         assert_string_equal(book->rows[pairs[i].with].label, wanted[i][1]);
     }
     arena_destroy(arena);
+}
+
+/* Two cells that are a pair but for one thing. */
+static void test_pairs__other_levels_formats_effects_and_failures_part_cells(void **state)
+{
+    (void)state;
+    for (int part = 0; part < 7; part++) {
+        struct arena *arena = arena_create(0);
+        struct run *run = tiny_run(arena, 2);
+        struct book *book;
+        size_t count;
+        struct result *without = add(arena, run, "polygons", "", 0, 0.01);
+        struct result *with = add(arena, run, "polygons", "shadow=map", 0, 0.02);
+        if (part == 1)
+            with->cell.lod = LOD_HIGH;
+        if (part == 2)
+            with->cell.format = TARGET_RGBA8;
+        if (part == 3)
+            without->effects &= ~EFFECT_FOG;
+        if (part == 4)
+            with->effects = without->effects;
+        if (part >= 5)
+            (part == 5 ? with : without)->status = STATUS_CRASH;
+        found(arena, run, &book, &count);
+        assert_int_equal(count, part == 0);
+        arena_destroy(arena);
+    }
 }
 
 /* Ratios of 3, 5 and 4; that of the medians would be 5. */
@@ -120,6 +148,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs__a_switch_and_what_depends_on_it_may_differ_and_nothing_else),
+        cmocka_unit_test(test_pairs__other_levels_formats_effects_and_failures_part_cells),
         cmocka_unit_test(test_pairs__the_price_is_of_times_of_the_same_round),
         cmocka_unit_test(test_pairs__the_page_sets_both_errors_and_the_price_beside_each_other),
     };
