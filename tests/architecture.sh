@@ -54,6 +54,9 @@ check 'a method includes only what the contract lets it see' "$(grep -nE '#inclu
 check 'a shader is included by its own method' "$(for f in methods/*.c; do
   grep -oE '"[a-z_-]+\.glsl\.h"' "$f" | tr -d '"' | grep -v "^$(basename "$f" .c)\.glsl\.h\$" | sed "s|^|$f: |"
 done)"
+check "a method's name is its file's" "$(for f in methods/*.c; do
+  grep -qF ".name = \"$(basename "$f" .c)\"," "$f" || echo "$f: $(grep -oE '\.name = "[^"]*"' "$f" || echo 'no .name')"
+done)"
 
 # 4. The language: no typedefs for structs, no conditional compilation, no mutable globals.
 check 'no typedefs for structs' "$(grep -nE '^\s*typedef\s+struct' $sources)"
