@@ -91,6 +91,35 @@ for document in sys.argv[1:]:
 print(*bad, sep="\n", end="")
 sys.exit(bool(bad))
 P
+check 'commands of every document name verbs, options, methods and scenes that there are' python3 - "${documents[@]}" <<'P'
+import json, re, subprocess, sys
+def treeline(*words):
+    return subprocess.run(["./treeline", *words], capture_output=True, text=True)
+def names(what):
+    return {row["name"] for row in json.loads(treeline("list", what, "--json").stdout)[what]}
+known = {"--method": names("methods"), "--scene": names("scenes")}
+helps, bad, commands = {}, [], 0
+for document in sys.argv[1:]:
+    text = open(document).read()
+    lines = re.findall(r"^ {4}(?:.* && )?(?:\./)?treeline (.*)$", text, re.M)
+    lines += [span.partition("treeline ")[2] for span in re.findall(r"`((?:\./)?treeline [^`]*)`", text)]
+    for line in lines:
+        words = re.sub(r" #.*", "", line.replace("\n", " ")).split()
+        if not re.fullmatch("[a-z]+", words[0]):
+            continue  # VERB
+        commands += 1
+        if words[0] not in helps:
+            shown = treeline("help", words[0])
+            helps[words[0]] = shown.stdout if shown.returncode == 0 else ""
+        missing = [w for w in words[1:] if re.match("--[a-z]", w) and not re.search(w + r"\b", helps[words[0]])]
+        missing += [v for o, v in zip(words, words[1:]) if o in known and "." not in v and not v.startswith("my-")
+                    and v.partition(":")[0] not in known[o]]
+        if not helps[words[0]] or missing:
+            bad.append(f"{document}: treeline {' '.join(words)}: {' '.join(missing) or words[0]}")
+assert commands > 30, commands
+print(*bad, sep="\n", end="")
+sys.exit(bool(bad))
+P
 check 'the glossary is sorted and knows every metric, effect, target and level' python3 - GLOSSARY.md <<'P'
 import json, re, subprocess, sys
 rows = [line.split("|")[1].strip() for line in open(sys.argv[1]) if line.startswith("| ")][1:]
