@@ -100,7 +100,7 @@ static void see(const struct hull *hull, const struct hull_frame *frame, struct 
     const float *x = hull->points[0], *y = hull->points[1], *z = hull->points[2];
     const float *across = frame->across, *down = frame->down, *depth = frame->depth;
     seen->count = hull->count;
-    for (int i = 0; i < hull->count; i++) {
+    for (int i = 0; i < HULL_SIDES || i < hull->count; i++) { /* a ring at least */
         float scale = 1 / (depth[0] * x[i] + depth[1] * y[i] + depth[2] * z[i] + depth[3]);
         seen->x[i] = scale * (across[0] * x[i] + across[1] * y[i] + across[2] * z[i] + across[3]);
         seen->y[i] = scale * (down[0] * x[i] + down[1] * y[i] + down[2] * z[i] + down[3]);
