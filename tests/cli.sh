@@ -178,8 +178,9 @@ try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --tree
 is 'failed cells end in 77' $rc -eq 77
 is 'all of them are in the file' "$(told "$work/fails/cells.jsonl")" -eq 5
 is 'a crash is called a crash' "$(grep -c '"status":"crash"' "$work/fails/cells.jsonl")" -eq 2
-try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q --resume
+try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" --resume
 is 'resuming keeps failures' "$(told "$work/fails/cells.jsonl")" -eq 5
+is 'and says so' "$(grep -c '3 repetitions failed before; --retry' "$work/err")" -eq 1
 try run --scene tiny --method "$plugins/bad.so:way=none,crash,exit-1,nan" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --out "$work/fails" -q --resume --retry
 is '--retry runs them again' "$(told "$work/fails/cells.jsonl")" -eq 8
 try run --scene tiny --method "$plugins/bad.so:way=hang" --trees 1 --size 32x24 "${fast[@]}" --rounds 1 --timeout 0.5 --out "$work/hang" -q

@@ -55,12 +55,12 @@ size_t cli_bytes(const struct argp_state *state, const char *option, const char 
     return (size_t)(value * factor);
 }
 
-uint64_t cli_seed(const struct argp_state *state, const char *option, const char *text)
+uint64_t cli_seed(const struct argp_state *state, const char *text)
 {
     uint64_t seed = 0;
     struct error error;
     if (seed_parse(text, &seed, &error))
-        argp_failure(state, STATUS_USAGE, 0, "--%s: %s", option, error.text);
+        argp_failure(state, STATUS_USAGE, 0, "--%s", error.text); /* begins with seed: */
     return seed;
 }
 
@@ -98,7 +98,7 @@ static error_t shot_option(int key, char *text, struct argp_state *state)
         shot->quiet = true;
         return 0;
     case KEY_SEED:
-        shot->seed = cli_seed(state, "seed", text);
+        shot->seed = cli_seed(state, text);
         shot->seed_given = true;
         return 0;
     case KEY_TIME:

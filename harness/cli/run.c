@@ -65,6 +65,7 @@ static double repetition_guess_seconds(const struct plan *plan)
 struct done {
     size_t slots_count;
     uint64_t *slots;
+    size_t failed; /* of them */
 };
 
 static uint64_t repetition_hash(const char *cell, int repetition)
@@ -91,12 +92,16 @@ static enum status done_read(struct arena *arena, const char *folder, bool retry
     for (done->slots_count = 16; done->slots_count < 4 * run->results_count;)
         done->slots_count *= 2;
     done->slots = ARENA_ARRAY(arena, uint64_t, done->slots_count);
-    for (size_t i = 0; i < run->results_count; i++) {
-        const struct result *result = &run->results[i];
-        uint64_t hash = repetition_hash(result->cell.name, result->repetition);
-        if (result->status == STATUS_OK || !retry)
-            *done_slot(done, hash) = hash;
-    }
+    for (int failures = 0; failures <= (int)!retry; failures++)
+        for (size_t i = 0; i < run->results_count; i++) {
+            const struct result *result = &run->results[i];
+            uint64_t hash = repetition_hash(result->cell.name, result->repetition);
+            uint64_t *slot = done_slot(done, hash);
+            if ((result->status != STATUS_OK) != failures || *slot == hash)
+                continue;
+            *slot = hash;
+            done->failed += (size_t)failures;
+        }
     return STATUS_OK;
 }
 
@@ -200,6 +205,9 @@ static enum status rounds_do(struct arena *arena, struct rounds *rounds, struct 
                 "treeline: %zu repetition%s of %zu cell%s into %s, about %.0f s of measuring\n",
                 rounds->count, plural(rounds->count), plan->cells_count, plural(plan->cells_count),
                 rounds->folder, (double)rounds->count * repetition_guess_seconds(plan));
+    if (rounds->done.failed && !rounds->request->quiet)
+        fprintf(stderr, "treeline: %zu repetition%s failed before; --retry runs them again\n",
+                rounds->done.failed, plural(rounds->done.failed));
     if (!rounds->count)
         return STATUS_OK;
     enum status status =

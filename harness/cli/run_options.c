@@ -225,7 +225,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         plan->filter = text;
         return 0;
     case KEY_SEED:
-        plan->seed = cli_seed(state, "seed", text);
+        plan->seed = cli_seed(state, text);
         plan->seed_given = true;
         return 0;
     case ARGP_KEY_ARG:
