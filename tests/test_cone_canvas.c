@@ -6,23 +6,28 @@
 
 enum { WIDTH = 36, HEIGHT = 34, FINE = 4 };
 
-/* A hedge of twigs behind a slanted ridge, which hides some of it; before a hill or a black sky. */
+/* A hedge of twigs behind a slanted ridge, which hides some of it; before a hill or a black sky.
+ * With the hill it stands a second time before the ridge, a third as large at a third of the
+ * distance. */
 static struct world ridge(int fine, bool trees, bool hill)
 {
-    enum { COUNT = 120 };
+    enum { COUNT = 80 };
     struct world world = world_create(WIDTH * fine, HEIGHT * fine, 0.5);
     struct terrain *terrain = &world.scene.terrain;
     struct conifer_twig twigs[COUNT];
     struct random random = random_seed(5, 1);
     for (int k = 0; k < COUNT; k++) {
         twigs[k] = twig_along(random_double(&random) - 0.5, 1, 0.3);
-        twigs[k].base_m[0] = 0.02f * (float)k - 1.2f;
+        twigs[k].base_m[0] = 0.03f * (float)k - 1.2f;
         twigs[k].base_m[1] =
             0.3f + 0.2125f * twigs[k].base_m[0]; /* the ridge is seen 0.15 m above */
         twigs[k].needle_radius_m = 0.002f;
     }
     if (trees)
         plant_add(&world, plant_of(world.arena, twigs, COUNT));
+    if (trees && hill)
+        world.scene.instances[world.scene.instances_count++] =
+            (struct instance){{-0.05f, 0.6f, 3}, 0, 1.0f / 3, 0, 1};
     world.scene.terrain = level_ground(world.arena, 8, 0.4f);
     terrain->samples_z = 5;
     terrain->heights_m = ARENA_ARRAY(world.arena, float, 10);
@@ -84,7 +89,8 @@ static void test_canvas__an_edge_of_relief_is_the_mean_of_its_parts(void **state
     check_parts(true);
 }
 
-/* Trees behind the edge: seen in the part of the pixel that the relief leaves. */
+/* Trees behind the edge: seen in the part of the pixel that the relief leaves; before it: in all of
+ * it. */
 static void check_trees(bool hill)
 {
     struct world world = ridge(1, true, hill), parts = ridge(FINE, true, hill);
@@ -101,7 +107,8 @@ static void check_trees(bool hill)
         error[0] += fabs(cut->rgba[4 * i + 3] - truth);
         error[1] += fabs(whole->rgba[4 * i + 3] - truth);
     }
-    if (!(sum > 2 && error[0] < 0.12 * sum && error[0] < 0.4 * error[1]))
+    /* a hedge before the ridge is right without layers, too */
+    if (!(sum > 2 && error[0] < (hill ? 0.06 : 0.12) * sum && (hill || error[0] < 0.4 * error[1])))
         fail_msg("covered %.2f, off by %.2f, without layers by %.2f", sum, error[0], error[1]);
     arena_destroy(world.arena);
     arena_destroy(parts.arena);

@@ -19,6 +19,12 @@ static struct rig *rig_of(struct arena *arena, float detail_px)
     return rig;
 }
 
+/* Level, and 10 m higher along one side. */
+static float walled(float x, float z)
+{
+    return z > 0.81f ? 8 : 0 * x - 2;
+}
+
 /* Off the edges nothing is wrong that every triangle would have right: what casts is what is drawn,
  * and does not shade itself. */
 static void test_shadow_levels__shadows_are_as_right_as_on_every_triangle(void **unused)
@@ -38,6 +44,25 @@ static void test_shadow_levels__shadows_are_as_right_as_on_every_triangle(void *
                options[o], WIDTH * HEIGHT, off[0], edge[0], off[1], edge[1]);
         assert_true(off[1] <= off[0] + 40);
     }
+    (void)unused;
+}
+
+/* The wall is behind the eye, the sun behind the wall. */
+static void test_shadow_levels__what_is_out_of_the_picture_casts_too(void **unused)
+{
+    int off[2], edge[2];
+    for (int d = 0; d < 2; d++) {
+        struct arena *arena = arena_create(0);
+        struct rig *rig = rig_open(ring(arena, 12, 8), arena, walled);
+        rig->scene->terrain.detail_px = (float)d;
+        rig_look(rig, (float[3]){0, 5, -8}, (float[3]){0, -2, -20}, (float[3]){0.1f, 0.2f, 1});
+        off[d] = wrong_pixels(rig, "shadow-map", "samples=1,size=1024", &edge[d]);
+        embree_destroy(rig->embree);
+        arena_destroy(arena);
+    }
+    printf("# behind a wall, wrong off the edges and in all: every triangle %d %d, moved %d %d\n",
+           off[0], edge[0], off[1], edge[1]);
+    assert_true(off[1] <= off[0] + 10);
     (void)unused;
 }
 
@@ -88,6 +113,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shadow_levels__shadows_are_as_right_as_on_every_triangle),
+        cmocka_unit_test(test_shadow_levels__what_is_out_of_the_picture_casts_too),
         cmocka_unit_test(test_shadow_levels__fewer_triangles_are_drawn),
         cmocka_unit_test(test_shadow_levels__a_map_follows_the_levels_of_the_view),
     };
