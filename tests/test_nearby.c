@@ -13,6 +13,19 @@ static double apart(const struct frame *a, const struct frame *b)
     return sqrt(sum / (4 * TREE_PIXELS));
 }
 
+/* The greatest difference of a picture to the mix of two, in any channel. */
+static double apart_from_mix(const struct frame *frame, const struct frame *const shown[SHOWN],
+                             double share)
+{
+    double most = 0;
+    for (int i = 0; i < 4 * TREE_PIXELS; i++) {
+        double mix = (1 - share) * (double)shown[SHOWN_SLICES]->rgba[i] +
+                     share * (double)shown[SHOWN_TRIANGLES]->rgba[i];
+        most = fmax(most, fabs((double)frame->rgba[i] - mix));
+    }
+    return most;
+}
+
 enum { VIEWS_MOST = 3 };
 struct pictures {
     const struct frame *of[VIEWS_MOST][SHOWN];
@@ -73,6 +86,39 @@ static void test_nearby__with_smooth_slices_turn_into_triangles_gradually(void *
     claim_gradual(f, "jakulin", "smooth=on");
 }
 
+/* Two pictures of one tree, each opaque where it is, do not hide less while they change places:
+ * every pixel is the mean of both, and so is the coverage, held against what is traced. */
+static void claim_covers(struct fixture *f, const char *method, const char *options)
+{
+    static const float shares[VIEWS_MOST] = {0.25f, 0.5f, 0.75f};
+    struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
+    struct view views[VIEWS_MOST];
+    for (int v = 0; v < VIEWS_MOST; v++)
+        views[v] = view_from(f, scene, exp2f(0.5f * (1 - shares[v])));
+    struct pictures pictures = draw(f, method, options, scene, views, VIEWS_MOST);
+    for (int v = 0; v < VIEWS_MOST; v++) {
+        double traced = tree_mean(tree_reference(f->arena, scene, lit, &views[v]), 3);
+        double bias[SHOWN], most;
+        for (int k = 0; k < SHOWN; k++)
+            bias[k] = tree_mean(pictures.of[v][k], 3) - traced;
+        most = fmax(fabs(bias[SHOWN_SLICES]), fabs(bias[SHOWN_TRIANGLES])) + 0.0005;
+        double off = apart_from_mix(pictures.of[v][SHOWN_NEAR], pictures.of[v], (double)shares[v]);
+        if (!(fabs(bias[SHOWN_NEAR]) < most && off < 1e-3))
+            fail_msg("%s, share %g: covers %+.4f of what is traced; slices %+.4f, triangles "
+                     "%+.4f; a pixel is %g from the mean of both",
+                     method, (double)shares[v], bias[SHOWN_NEAR], bias[SHOWN_SLICES],
+                     bias[SHOWN_TRIANGLES], off);
+    }
+}
+
+static void test_nearby__between_them_a_tree_hides_as_much_as_the_mean_of_both(void **state)
+{
+    struct fixture *f = *state;
+    claim_covers(f, "texels", "slices=32,turns=1,smooth=on");
+    claim_covers(f, "shaded-texels", "slices=32,smooth=on");
+    claim_covers(f, "jakulin", "smooth=on");
+}
+
 static void test_nearby__without_smooth_they_do_so_at_once(void **state)
 {
     struct fixture *f = *state;
@@ -124,6 +170,32 @@ static void test_nearby__trees_that_become_near_hide_each_other_in_order(void **
         fail_msg("off by %.3f of %.3f", to / whole, whole);
 }
 
+/* A small one before a large one that begins to be near, or is: it is seen, itself by its slices.
+ */
+static void test_nearby__a_small_tree_stays_before_a_large_one_that_is_near(void **state)
+{
+    struct fixture *f = *state;
+    static const float radii[2] = {1.413f, 0.999f};
+    for (int near = 0; near < 2; near++) {
+        struct scene *scene = tree_scene(f->arena, f->plant, 2, 1);
+        struct view view = view_from(f, scene, radii[near]);
+        scene->instances[1].scale = 0.25f;
+        for (int i = 0; i < 3; i++)
+            scene->instances[1].position_m[i] = 0.4f * (view.eye_m[i] - 3.5f * (float)(i == 1));
+        scene->instances[1].position_m[1] = 2.6f;
+        struct pictures with = draw(f, "shaded-texels", "slices=32,smooth=on", scene, &view, 1);
+        scene->instances_count = 1;
+        struct pictures without = draw(f, "shaded-texels", "slices=32,smooth=on", scene, &view, 1);
+        const struct frame *const *shown = with.of[0];
+        int like = near ? SHOWN_TRIANGLES : SHOWN_SLICES;
+        double seen = apart(shown[SHOWN_NEAR], without.of[0][SHOWN_NEAR]);
+        double whole = apart(shown[like], without.of[0][like]),
+               off = apart(shown[SHOWN_NEAR], shown[like]);
+        if (!(whole > 0.01 && seen > 0.7 * whole && off < 0.6 * whole))
+            fail_msg("near %d: %.3f is seen of %.3f, off by %.3f", near, seen, whole, off);
+    }
+}
+
 static int open_fixture(void **state)
 {
     return fixture_open(state, "shaded-texels");
@@ -133,9 +205,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nearby__with_smooth_slices_turn_into_triangles_gradually),
+        cmocka_unit_test(test_nearby__between_them_a_tree_hides_as_much_as_the_mean_of_both),
         cmocka_unit_test(test_nearby__without_smooth_they_do_so_at_once),
         cmocka_unit_test(test_nearby__above_a_tree_it_is_as_beside_it),
         cmocka_unit_test(test_nearby__trees_that_become_near_hide_each_other_in_order),
+        cmocka_unit_test(test_nearby__a_small_tree_stays_before_a_large_one_that_is_near),
     };
     return cmocka_run_group_tests_name("nearby", tests, open_fixture, close_fixture);
 }

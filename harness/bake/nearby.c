@@ -160,43 +160,35 @@ float nearby_share(const struct nearby *nearby, uint32_t instance)
     return 0;
 }
 
-/* What a tree's nearest triangles show, over what is there: their depth, then their light. */
-static void partial_draw(struct workspace *workspace, struct nearby *nearby,
-                         const struct triangles_frame *frame, size_t k)
+static enum status draw_some(struct workspace *workspace, struct nearby *nearby,
+                             const struct view *view, struct cull_list list, int samples,
+                             struct cull *cull)
 {
-    struct gl *gl = workspace->gl;
-    uint32_t instance = nearby->instances[k]; /* a list is drawn from a copy: it is reordered */
-    float depth_m = nearby->depths_m[k];
-    struct cull_list list = {1, &instance, &depth_m};
-    gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    triangles_draw(workspace, nearby->triangles, frame, &list);
-    gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    gl->DepthFunc(GL_EQUAL);
-    gl->Enable(GL_BLEND);
-    gl->BlendColor(0, 0, 0, nearby->shares[k]);
-    gl->BlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
-    triangles_draw(workspace, nearby->triangles, frame, &list);
-    gl->BlendColor(0, 0, 0, 0);
-    gl->Disable(GL_BLEND);
-    gl->DepthFunc(GL_LESS);
+    enum status status = nearby->triangles ? STATUS_OK : upload(workspace, nearby);
+    if (status != STATUS_OK)
+        return status;
+    struct sampling_places places = sampling_places_bound(workspace->gl, samples);
+    struct triangles_frame frame = {view, view, &places, cull};
+    triangles_draw(workspace, nearby->triangles, &frame, &list);
+    return STATUS_OK;
 }
 
 enum status nearby_draw(struct workspace *workspace, struct nearby *nearby, const struct view *view,
                         int samples, struct cull *cull)
 {
-    enum status status = STATUS_OK;
-    if (!nearby->count && !nearby->partial_count)
-        return STATUS_OK;
-    if (!nearby->triangles)
-        status = upload(workspace, nearby);
-    if (status != STATUS_OK)
-        return status;
     struct cull_list list = {nearby->count, nearby->instances, nearby->depths_m};
-    struct sampling_places places = sampling_places_bound(workspace->gl, samples);
-    struct triangles_frame frame = {view, view, &places, cull};
-    triangles_draw(workspace, nearby->triangles, &frame, &list);
-    /* in the array's order they come from the farthest to the nearest */
-    for (size_t k = NEARBY_MOST - nearby->partial_count; k < NEARBY_MOST; k++)
-        partial_draw(workspace, nearby, &frame, k);
+    return nearby->count ? draw_some(workspace, nearby, view, list, samples, cull) : STATUS_OK;
+}
+
+enum status nearby_draw_one(struct workspace *workspace, struct nearby *nearby,
+                            const struct view *view, uint32_t instance, int samples,
+                            struct cull *cull)
+{
+    for (size_t k = NEARBY_MOST - nearby->partial_count; k < NEARBY_MOST; k++) {
+        float depth_m = nearby->depths_m[k]; /* a list is drawn from a copy: it is reordered */
+        struct cull_list list = {1, &instance, &depth_m};
+        if (nearby->instances[k] == instance)
+            return draw_some(workspace, nearby, view, list, samples, cull);
+    }
     return STATUS_OK;
 }

@@ -31,13 +31,18 @@ enum status nearby_prepare(struct workspace *workspace, const struct scene *scen
 void nearby_take(struct nearby *nearby, const struct view *view, enum cull_order order,
                  struct cull_list *list);
 
-/* The share of a tree that nearby_draw shows, of nearby_take's view; 0..1. */
+/* Of nearby_take's view, the share of a tree that is to be shown by its triangles; 0 of one that is
+ * near altogether or not at all. */
 float nearby_share(const struct nearby *nearby, uint32_t instance);
 
-/* Draws what was taken, depth tested, into what is bound, of so many samples a texel: near trees
- * without blending, then, over what is there, each of those that become near by its share. Nothing
- * where there is none. */
+/* Draws the trees that are near altogether, without blending, depth tested, into what is bound, of
+ * so many samples a texel. Nothing where there is none. */
 enum status nearby_draw(struct workspace *workspace, struct nearby *nearby, const struct view *view,
                         int samples, struct cull *cull);
+
+/* The same of one tree that becomes near, all of it. */
+enum status nearby_draw_one(struct workspace *workspace, struct nearby *nearby,
+                            const struct view *view, uint32_t instance, int samples,
+                            struct cull *cull);
 
 #endif

@@ -53,6 +53,7 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
     struct stack *stack = *result = ARENA_NEW(arena, struct stack);
     stack->scene = scene;
     stack->request = *request;
+    const float octaves = request->groups > 0 ? 0 : request->near_octaves;
     enum status status = backdrop_prepare(workspace, scene, &stack->backdrop);
     if (status == STATUS_OK)
         status = shadow_choice_prepare(workspace, scene, &request->sun, true, stack->backdrop,
@@ -62,9 +63,10 @@ enum status stack_prepare(struct workspace *workspace, const struct scene *scene
     if (status == STATUS_OK)
         status = stack_program(workspace, stack);
     if (status == STATUS_OK)
-        status = nearby_prepare(workspace, scene, request->near_radii,
-                                request->groups > 0 ? 0 : request->near_octaves,
+        status = nearby_prepare(workspace, scene, request->near_radii, octaves,
                                 sun_shadows_map(stack->shadows), &stack->nearby);
+    if (status == STATUS_OK && octaves > 0)
+        status = stack_near_prepare(workspace, &stack->turning);
     if (status == STATUS_OK && request->distant_px > 0 && !stack->shadows &&
         workspace->lod == LOD_AUTO && request->ground == GROUND_UPRIGHT &&
         !scene_is_stretched(scene))
@@ -178,12 +180,11 @@ static struct fill fill_behind(const struct stack *stack, const struct view *vie
     int count = stack_parts(stack, view, lod, instance, parts);
     int apart = crossed ? levels_apart(parts, count) : 0;
     const size_t number = (size_t)(instance - stack->scene->instances);
-    const float near = (stack->distant ? 1 - distant_share(stack->distant, number) : 1) *
-                       (1 - nearby_share(stack->nearby, (uint32_t)number));
+    const float left = stack->distant ? 1 - distant_share(stack->distant, number) : 1;
     for (int k = 0; k < count; k++) {
         struct stack_tree *tree = &stack->trees[fill.parts + (size_t)k];
         stack_tree_fill(stack, view, instance, &parts[k], tree);
-        tree->power *= near;
+        tree->power *= left;
         if (stack->bends)
             stack_bend_fill(stack, instance, tree, &stack->bends[fill.parts + (size_t)k]);
     }
@@ -255,6 +256,8 @@ static void draw_stacks(struct workspace *workspace, const struct stack *stack,
                         size_t end)
 {
     struct fill fill = {0, 0};
+    if (first == end)
+        return;
     use_program(workspace, stack, view);
     tally_texels_begin(workspace);
     for (size_t i = first; i < end; i++) {
@@ -275,14 +278,14 @@ static void draw_stacks(struct workspace *workspace, const struct stack *stack,
     workspace->gl->DepthMask(GL_TRUE);
 }
 
-/* Groups of as many trees each. The triangles of near trees are in front of all. */
+/* Groups of as many trees each; near trees first, as back to front. */
 static enum status draw_front_to_back(struct workspace *workspace, struct stack *stack,
                                       const struct view *view, const struct target *target,
                                       const struct cull_list *list)
 {
     size_t groups = (size_t)stack->request.groups;
-    stack_front_begin(workspace, stack->front, target);
     enum status status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);
+    stack_front_begin(workspace, stack->front, target);
     for (size_t group = 0; group < groups; group++) {
         size_t first = list->count * group / groups, end = list->count * (group + 1) / groups;
         if (first == end)
@@ -294,6 +297,38 @@ static enum status draw_front_to_back(struct workspace *workspace, struct stack 
     stack_front_end(workspace, stack->front, target);
     workspace->gl->Disable(GL_BLEND);
     workspace->gl->DepthMask(GL_TRUE);
+    return status;
+}
+
+/* One tree by its slices and by its triangles, mixed. */
+static enum status draw_turning(struct workspace *workspace, struct stack *stack,
+                                const struct view *view, const struct target *target,
+                                const struct cull_list *list, size_t at)
+{
+    uint32_t instance = list->instances[at];
+    stack_near_slices(workspace, stack->turning, target);
+    draw_stacks(workspace, stack, view, list, at, at + 1);
+    stack_near_triangles(workspace, stack->turning, target);
+    enum status status = nearby_draw_one(workspace, stack->nearby, view, instance, 1, stack->cull);
+    stack_near_end(workspace, stack->turning, target, nearby_share(stack->nearby, instance));
+    return status;
+}
+
+/* Near trees first: slices before their triangles are over them, those behind are not drawn. */
+static enum status draw_back_to_front(struct workspace *workspace, struct stack *stack,
+                                      const struct view *view, const struct target *target,
+                                      const struct cull_list *list)
+{
+    enum status status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);
+    size_t first = 0;
+    for (size_t i = 0; i < list->count && stack->turning && status == STATUS_OK; i++) {
+        if (!(nearby_share(stack->nearby, list->instances[i]) > 0))
+            continue;
+        draw_stacks(workspace, stack, view, list, first, i);
+        status = draw_turning(workspace, stack, view, target, list, i);
+        first = i + 1;
+    }
+    draw_stacks(workspace, stack, view, list, first, list->count);
     return status;
 }
 
@@ -309,12 +344,8 @@ enum status stack_trees(struct workspace *workspace, struct stack *stack, const 
     status = stack->distant ? distant_draw(workspace, stack->distant, view) : STATUS_OK;
     if (status != STATUS_OK)
         return status;
-    if (stack->front) {
-        status = draw_front_to_back(workspace, stack, view, target, &list);
-    } else {
-        draw_stacks(workspace, stack, view, &list, 0, list.count);
-        status = nearby_draw(workspace, stack->nearby, view, 1, stack->cull);
-    }
+    status = stack->front ? draw_front_to_back(workspace, stack, view, target, &list)
+                          : draw_back_to_front(workspace, stack, view, target, &list);
     gl->BindVertexArray(0);
     gl->UseProgram(0);
     for (GLuint i = 0; i < 3; i++) {

@@ -15,6 +15,7 @@
 #include "bake/shadow_choice.h"
 #include "bake/slices.h"
 #include "bake/stack_front.h"
+#include "bake/stack_near.h"
 
 /* How boxes stand on the terrain: upright, as trees do; with the four points of their base on it;
  * with their tops as high above it along its normals (Meyer and Neyret 1998: boxes of 2 x 4 points
@@ -111,6 +112,7 @@ struct stack {
     struct sun_shadows *shadows; /* NULL: none */
     struct distant *distant;     /* NULL: no tree is */
     struct stack_front *front;   /* NULL: back to front */
+    struct stack_near *turning;  /* to triangles; NULL: no tree does so gradually */
     GLuint program, vertices, trees_buffer, quads_buffer;
     GLuint bends_buffer;      /* 0: upright */
     struct stack_bend *bends; /* of stack_bake.h, as trees */
