@@ -312,13 +312,18 @@ static void layer_shade(const struct cone_canvas *canvas, size_t pixel, float de
 {
     if (!canvas->lights || !(sun > 0) || !isfinite(depth_m))
         return;
+    const struct backdrop_rays *rays = &canvas->rays;
     float x = (float)(pixel % (size_t)canvas->width_px);
     float y = (float)(pixel / (size_t)canvas->width_px), place_m[3];
-    for (int i = 0; i < 3; i++)
-        place_m[i] =
-            canvas->eye_m[i] + depth_m * (canvas->rays.first[i] + x * canvas->rays.right[i] +
-                                          y * canvas->rays.down[i]);
-    float dark = (1 - cone_lights_at(canvas->lights, place_m)) * sun;
+    struct shadow_pixel seen = {.depth_m = depth_m};
+    for (int i = 0; i < 3; i++) {
+        seen.eye_m[i] = canvas->eye_m[i];
+        seen.right[i] = rays->right[i];
+        seen.down[i] = rays->down[i];
+        seen.ray[i] = rays->first[i] + x * rays->right[i] + y * rays->down[i];
+        place_m[i] = seen.eye_m[i] + depth_m * seen.ray[i];
+    }
+    float dark = (1 - cone_lights_on_ground(canvas->lights, &seen)) * sun;
     float albedo[3];
     terrain_albedo(&canvas->scene->terrain, place_m[0], place_m[2], albedo);
     for (int c = 0; c < 3; c++)

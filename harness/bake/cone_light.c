@@ -26,6 +26,7 @@ struct cone_lights {
     float *keys, *scratch_keys;
     uint32_t *order, *scratch_order;
     struct shadow_light light;
+    struct shadow_ground ground;
 };
 
 static struct cone_kind *kind_of(const struct cone_lights *lights, const struct instance *instance)
@@ -114,9 +115,9 @@ static void map_build(struct cone_lights *lights, int threads)
                     threads);
 }
 
-float cone_lights_at(const struct cone_lights *lights, const float place_m[3])
+float cone_lights_on_ground(const struct cone_lights *lights, const struct shadow_pixel *pixel)
 {
-    return shadow_light_at(&lights->light, place_m);
+    return shadow_ground_at(&lights->ground, &lights->light, pixel);
 }
 
 static void kinds_build(struct cone_lights *lights, int threads)
@@ -142,6 +143,7 @@ void cone_lights_turn(struct cone_lights *lights, const float sun_direction[3], 
         return;
     kinds_build(lights, threads);
     map_build(lights, threads);
+    shadow_ground_fill(lights->arena, &lights->ground, &lights->light, threads);
 #pragma omp parallel for num_threads(threads) schedule(static, 64)
     for (size_t i = 0; i < count; i++) {
         const struct shadow_caster caster = caster_of(lights, i);

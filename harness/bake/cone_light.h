@@ -9,6 +9,7 @@
 #define TREELINE_BAKE_CONE_LIGHT_H
 
 #include "bake/cone_plant.h"
+#include "bake/shadow_ground.h"
 #include "method/method.h"
 
 struct cone_lights;
@@ -29,7 +30,7 @@ struct cone_tree_light {
 void cone_lights_of_tree(const struct cone_lights *lights, size_t instance,
                          struct cone_tree_light *light);
 float cone_tree_light_gain(const struct cone_tree_light *light, const float place_m[3]);
-/* Share of the sun that reaches a place in the world, m, through trees and terrain. */
-float cone_lights_at(const struct cone_lights *lights, const float place_m[3]);
+/* Share of the sun that reaches the ground that a pixel sees, through trees and terrain. */
+float cone_lights_on_ground(const struct cone_lights *lights, const struct shadow_pixel *pixel);
 
 #endif

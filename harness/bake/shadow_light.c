@@ -9,9 +9,11 @@ void shadow_light_create(struct arena *arena, const struct terrain *terrain,
                          struct shadow_light *light)
 {
     const size_t samples = (size_t)terrain->samples_x * terrain->samples_z;
-    *light = (struct shadow_light){.terrain = terrain, .least_m = INFINITY};
-    for (size_t i = 0; i < samples; i++)
+    *light = (struct shadow_light){.terrain = terrain, .least_m = INFINITY, .most_m = -INFINITY};
+    for (size_t i = 0; i < samples; i++) {
         light->least_m = fminf(light->least_m, terrain->heights_m[i]);
+        light->most_m = fmaxf(light->most_m, terrain->heights_m[i]);
+    }
     if (samples > 0 && !horizon_is_flat(terrain))
         light->terrain_m = ARENA_ARRAY(arena, float, samples);
 }

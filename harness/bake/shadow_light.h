@@ -6,8 +6,8 @@
 
 struct shadow_light {
     const struct terrain *terrain;
-    float *terrain_m; /* NULL: no terrain, or flat */
-    float least_m;    /* height of the terrain's lowest sample */
+    float *terrain_m;      /* NULL: no terrain, or flat */
+    float least_m, most_m; /* heights of the terrain's lowest and highest sample */
     float sun_direction[3];
     struct shadow_axes frame;
     struct shadow_map map; /* of the trees, filled by who knows them */

@@ -1,0 +1,278 @@
+/* Shares of the sun on the ground, filled once a sun, looked up by pixels' footprints. */
+#include "bake/shadow_ground.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    CELLS_MAX = 1 << 20,
+    PROBES = 16, /* along a footprint, at most */
+};
+
+static float dot3(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static float height_at(const struct shadow_light *light, float x_m, float z_m)
+{
+    return light->terrain_m ? terrain_height(light->terrain, x_m, z_m)
+                            : light->terrain->heights_m[0];
+}
+
+/* Where the light that passes the map's corners meets the lowest and the highest ground, within the
+ * terrain. False: nowhere. */
+static bool rect_of(const struct shadow_light *light, float low_m[2], float high_m[2])
+{
+    const struct shadow_map *map = &light->map;
+    const float(*axes)[3] = light->frame.axes;
+    const float half_m[2] = {0.5f * light->terrain->size_x_m, 0.5f * light->terrain->size_z_m};
+    for (int i = 0; i < 2; i++) {
+        low_m[i] = INFINITY;
+        high_m[i] = -INFINITY;
+    }
+    for (int corner = 0; corner < 8; corner++) {
+        const float height_m = corner & 4 ? light->most_m : light->least_m;
+        float across_m[2];
+        for (int k = 0; k < 2; k++)
+            across_m[k] =
+                map->low_m[k] +
+                (corner >> k & 1 ? map->texel_m * (float)(map->size[k] + 1) : -map->texel_m);
+        const float down_m =
+            (height_m - across_m[0] * axes[0][1] - across_m[1] * axes[1][1]) / axes[2][1];
+        for (int i = 0; i < 2; i++) {
+            const float at_m = across_m[0] * axes[0][2 * i] + across_m[1] * axes[1][2 * i] +
+                               down_m * axes[2][2 * i];
+            low_m[i] = fminf(low_m[i], at_m);
+            high_m[i] = fmaxf(high_m[i], at_m);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        low_m[i] = fmaxf(low_m[i], -half_m[i]);
+        high_m[i] = fminf(high_m[i], half_m[i]);
+    }
+    return low_m[0] < high_m[0] && low_m[1] < high_m[1];
+}
+
+static void levels_lay(struct arena *arena, struct shadow_ground *ground, const float high_m[2])
+{
+    size_t cells = 0;
+    for (int k = 0; k < 2; k++)
+        ground->size[0][k] = 1 + (int32_t)((high_m[k] - ground->low_m[k]) / ground->cell_m);
+    for (int level = 0; level < SHADOW_GROUND_LEVELS; level++) {
+        const int32_t *size = ground->size[level];
+        cells += (size_t)size[0] * (size_t)size[1];
+        ground->levels_count = level + 1;
+        if ((size[0] == 1 && size[1] == 1) || level + 1 == SHADOW_GROUND_LEVELS)
+            break;
+        for (int k = 0; k < 2; k++)
+            ground->size[level + 1][k] = (size[k] + 1) / 2;
+    }
+    ground->levels[0] = shadow_room(arena, ground->levels[0], cells, &ground->capacity, 1);
+    for (int level = 1; level < ground->levels_count; level++) {
+        const int32_t *size = ground->size[level - 1];
+        ground->levels[level] = ground->levels[level - 1] + (size_t)size[0] * (size_t)size[1];
+    }
+}
+
+/* The cell of a level; what is beyond its border is lit. */
+static unsigned cell_at(const struct shadow_ground *ground, int level, int32_t x, int32_t z)
+{
+    const int32_t *size = ground->size[level];
+    return x >= 0 && z >= 0 && x < size[0] && z < size[1]
+               ? ground->levels[level][(size_t)z * (size_t)size[0] + (size_t)x]
+               : 255;
+}
+
+static void level_halve(const struct shadow_ground *ground, int level)
+{
+    const int32_t *size = ground->size[level];
+    uint8_t *to = ground->levels[level];
+    for (int32_t z = 0; z < size[1]; z++)
+        for (int32_t x = 0; x < size[0]; x++) {
+            unsigned sum = 2;
+            for (int k = 0; k < 4; k++)
+                sum += cell_at(ground, level - 1, 2 * x + (k & 1), 2 * z + (k >> 1));
+            *to++ = (uint8_t)(sum / 4);
+        }
+}
+
+void shadow_ground_fill(struct arena *arena, struct shadow_ground *ground,
+                        const struct shadow_light *light, int threads)
+{
+    float high_m[2];
+    ground->levels_count = 0;
+    if (light->terrain->samples_x == 0 || light->map.size[0] == 0 ||
+        !(light->sun_direction[1] > 0) || !rect_of(light, ground->low_m, high_m))
+        return;
+    const float area_m2 = (high_m[0] - ground->low_m[0]) * (high_m[1] - ground->low_m[1]);
+    ground->cell_m = fmaxf(light->map.texel_m, sqrtf(area_m2 / CELLS_MAX));
+    levels_lay(arena, ground, high_m);
+    const int32_t *size = ground->size[0];
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 16)
+    for (int32_t z = 0; z < size[1]; z++)
+        for (int32_t x = 0; x < size[0]; x++) {
+            float place_m[3] = {ground->low_m[0] + ((float)x + 0.5f) * ground->cell_m, 0,
+                                ground->low_m[1] + ((float)z + 0.5f) * ground->cell_m};
+            place_m[1] = height_at(light, place_m[0], place_m[2]);
+            ground->levels[0][(size_t)z * (size_t)size[0] + (size_t)x] =
+                (uint8_t)(255 * shadow_light_at(light, place_m) + 0.5f);
+        }
+    for (int level = 1; level < ground->levels_count; level++)
+        level_halve(ground, level);
+}
+
+static float level_at(const struct shadow_ground *ground, int level, float x_m, float z_m)
+{
+    const float per_m = 1 / (ground->cell_m * (float)(1 << level));
+    const float x = (x_m - ground->low_m[0]) * per_m - 0.5f;
+    const float z = (z_m - ground->low_m[1]) * per_m - 0.5f;
+    if (!(x > -1 && z > -1 && x < (float)ground->size[level][0] &&
+          z < (float)ground->size[level][1]))
+        return 1;
+    const int32_t column = (int32_t)(x + 1) - 1, row = (int32_t)(z + 1) - 1;
+    const float right = x - (float)column, down = z - (float)row;
+    float rows[2];
+    for (int k = 0; k < 2; k++) {
+        const float from = (float)cell_at(ground, level, column, row + k);
+        rows[k] = from + right * ((float)cell_at(ground, level, column + 1, row + k) - from);
+    }
+    return (rows[0] + down * (rows[1] - rows[0])) / 255;
+}
+
+/* Mean over about so wide a part of the ground. The light itself stands for what is finer than
+ * level 0. */
+static float part_at(const struct shadow_ground *ground, const struct shadow_light *light,
+                     const float place_m[3], float wide_m)
+{
+    const float level = log2f(fmaxf(wide_m / ground->cell_m, 1e-6f));
+    const float most = (float)(ground->levels_count - 1);
+    if (level <= -1)
+        return shadow_light_at(light, place_m);
+    if (level < 0) {
+        const float fine = shadow_light_at(light, place_m);
+        return fine + (1 + level) * (level_at(ground, 0, place_m[0], place_m[2]) - fine);
+    }
+    if (level >= most)
+        return level_at(ground, ground->levels_count - 1, place_m[0], place_m[2]);
+    const int whole = (int)level;
+    const float fine = level_at(ground, whole, place_m[0], place_m[2]);
+    const float coarse = level_at(ground, whole + 1, place_m[0], place_m[2]);
+    return fine + (level - (float)whole) * (coarse - fine);
+}
+
+/* The ground's normal, not of unit length, by differences over a quad. */
+static void normal_at(const struct shadow_light *light, const float place_m[3], float normal[3])
+{
+    const struct terrain *terrain = light->terrain;
+    normal[0] = normal[2] = 0;
+    normal[1] = 1;
+    if (!light->terrain_m)
+        return;
+    const float x_m = 0.5f * terrain->size_x_m / (float)(terrain->samples_x - 1);
+    const float z_m = 0.5f * terrain->size_z_m / (float)(terrain->samples_z - 1);
+    normal[0] = (terrain_height(terrain, place_m[0] - x_m, place_m[2]) -
+                 terrain_height(terrain, place_m[0] + x_m, place_m[2])) /
+                (2 * x_m);
+    normal[2] = (terrain_height(terrain, place_m[0], place_m[2] - z_m) -
+                 terrain_height(terrain, place_m[0], place_m[2] + z_m)) /
+                (2 * z_m);
+}
+
+/* A footprint's long axis: places at eye + depth / (1 + slant s) (ray + s step), s in low..high of
+ * the pixel's -1/2..1/2; where s is larger, the plane is nowhere or too far. */
+struct axis {
+    float slant, step[3], low, high;
+};
+
+/* False: the plane is seen from behind or along itself. */
+static bool axis_of(const struct shadow_pixel *pixel, const float normal[3], struct axis *axis)
+{
+    static const float farthest = 20; /* times as far as the pixel's middle */
+    const float toward = dot3(normal, pixel->ray);
+    const float right = dot3(normal, pixel->right), down = dot3(normal, pixel->down);
+    const float steep = sqrtf(right * right + down * down);
+    *axis = (struct axis){.low = -0.5f, .high = 0.5f};
+    if (!(toward < 0))
+        return false;
+    if (steep < -1e-6f * toward)
+        return true;
+    axis->slant = steep / toward; /* below 0: farther as s grows */
+    for (int i = 0; i < 3; i++)
+        axis->step[i] = (right * pixel->right[i] + down * pixel->down[i]) / steep;
+    axis->high = fminf(0.5f, (1 / farthest - 1) / axis->slant);
+    return true;
+}
+
+static void axis_place(const struct shadow_pixel *pixel, const struct axis *axis, float s,
+                       float place_m[3])
+{
+    const float depth_m = pixel->depth_m / (1 + axis->slant * s);
+    for (int i = 0; i < 3; i++)
+        place_m[i] = pixel->eye_m[i] + depth_m * (pixel->ray[i] + s * axis->step[i]);
+}
+
+static float distance(const float a[3], const float b[3])
+{
+    const float way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    return sqrtf(dot3(way, way));
+}
+
+/* Whether a footprint between two places, so wide, may reach what is shaded by trees. */
+static bool is_near(const struct shadow_ground *ground, const float from_m[3], const float to_m[3],
+                    float wide_m)
+{
+    for (int k = 0; k < 2; k++) {
+        const float end_m = ground->low_m[k] + ground->cell_m * (float)ground->size[0][k];
+        if (fmaxf(from_m[2 * k], to_m[2 * k]) + wide_m < ground->low_m[k] ||
+            fminf(from_m[2 * k], to_m[2 * k]) - wide_m > end_m)
+            return false;
+    }
+    return true;
+}
+
+static float axis_mean(const struct shadow_ground *ground, const struct shadow_light *light,
+                       const struct shadow_pixel *pixel, const struct axis *axis, float wide_m,
+                       int count)
+{
+    /* levels are read with weights that reach beyond a cell: measured, tests/test_shadow_ground.c
+     */
+    static const float blended = 0.7f;
+    float sum = 0, ends_m[2][3];
+    axis_place(pixel, axis, axis->low, ends_m[0]);
+    for (int k = 0; k < count; k++) {
+        const float step = (axis->high - axis->low) / (float)count;
+        const float s = axis->low + step * (float)(k + 1);
+        float place_m[3], long_m;
+        axis_place(pixel, axis, s, ends_m[1]);
+        axis_place(pixel, axis, s - 0.5f * step, place_m);
+        long_m = distance(ends_m[0], ends_m[1]);
+        memcpy(ends_m[0], ends_m[1], sizeof ends_m[0]);
+        if (light->terrain_m)
+            place_m[1] = terrain_height(light->terrain, place_m[0], place_m[2]);
+        sum += part_at(ground, light, place_m, blended * fmaxf(wide_m, long_m));
+    }
+    return sum / (float)count;
+}
+
+float shadow_ground_at(const struct shadow_ground *ground, const struct shadow_light *light,
+                       const struct shadow_pixel *pixel)
+{
+    struct axis axis;
+    float middle_m[3], ends_m[2][3], normal[3];
+    for (int i = 0; i < 3; i++)
+        middle_m[i] = pixel->eye_m[i] + pixel->depth_m * pixel->ray[i];
+    if (ground->levels_count == 0)
+        return shadow_light_at(light, middle_m);
+    normal_at(light, middle_m, normal);
+    if (!axis_of(pixel, normal, &axis))
+        return shadow_light_at(light, middle_m);
+    const float wide_m = pixel->depth_m * sqrtf(dot3(pixel->right, pixel->right));
+    axis_place(pixel, &axis, axis.low, ends_m[0]);
+    axis_place(pixel, &axis, axis.high, ends_m[1]);
+    if (!is_near(ground, ends_m[0], ends_m[1], wide_m))
+        return shadow_light_at(light, middle_m);
+    const float long_m = distance(ends_m[0], ends_m[1]);
+    const float probes = fminf(ceilf(long_m / fmaxf(wide_m, ground->cell_m)), PROBES);
+    return axis_mean(ground, light, pixel, &axis, wide_m, probes > 1 ? (int)probes : 1);
+}
