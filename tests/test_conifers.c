@@ -299,6 +299,33 @@ static void test_conifers__what_relief_hides_is_left_out_without_a_trace(void **
     arena_destroy(world.arena);
 }
 
+/* The light that a bush takes from the ground beside it, seen from above. */
+static void test_conifers__twigs_take_as_much_light_from_the_ground_as_traced(void **state)
+{
+    (void)state;
+    static const double suns[3][3] = {{0.9, 0.8, 0.1}, {-0.6, 0.5, 0.8}, {0.3, 0.5, -1}};
+    for (int k = 0; k < 3; k++) {
+        const double *sun = suns[k];
+        struct world world = world_create(48, 48, 0.1);
+        plant_add(&world, bush(world.arena));
+        world.scene.instances->position_m[1] = 1.5f;
+        world.scene.terrain = level_ground(world.arena, 30, 0.5f);
+        const float x = (float)(-1.9 / sun[1] * sun[0]), z = (float)(-1.9 / sun[1] * sun[2]);
+        world_look(&world, x, 16, z + 0.01f, x, 0, z);
+        world_sun(&world, sun[0], sun[1], sun[2]);
+        struct cones_options options = options_of(-1);
+        struct reference_options tracer = {
+            .effects = EFFECT_SUN_SHADOWS, .samples_min = 64, .samples_max = 64, .threads = 2};
+        struct reference_stats stats;
+        const double lit = 48 * 48 * 0.5 * (double)world.view.sun_direction[1];
+        const double taken = lit - sum_of(drawn(&world, &options, EFFECT_SUN_SHADOWS, 1), 0);
+        const double traced = lit - sum_of(world_render(&world, tracer, &stats), 0);
+        if (!(fabs(taken / traced - 1) < 0.06) || !(traced > 0.05 * lit))
+            fail_msg("sun %d: %.2f taken, %.2f traced, of %.1f", k, taken, traced, lit);
+        arena_destroy(world.arena);
+    }
+}
+
 static void test_conifers__fewer_and_larger_twigs_cover_as_much(void **state)
 {
     (void)state;
@@ -359,6 +386,7 @@ int main(void)
         cmocka_unit_test(test_conifers__levels_turn_into_each_other_without_a_leap),
         cmocka_unit_test(test_conifers__the_fast_way_draws_what_the_straightforward_one_does),
         cmocka_unit_test(test_conifers__what_relief_hides_is_left_out_without_a_trace),
+        cmocka_unit_test(test_conifers__twigs_take_as_much_light_from_the_ground_as_traced),
         cmocka_unit_test(test_conifers__fewer_and_larger_twigs_cover_as_much),
         cmocka_unit_test(test_conifers__a_hundred_thousand_trees_take_less_than_640_bytes_each),
     };

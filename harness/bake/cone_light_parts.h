@@ -12,6 +12,7 @@ struct cone_kind {
     struct shadow_volume volume; /* plates alone */
     uint8_t *cones, *barks;
     float *passes, *firsts_m, *lasts_m; /* a texel: what the sweep has left; where matter is */
+    float *taken;                       /* a texel: what the item at hand takes of it */
     float *keys, *scratch_keys;         /* twigs, then barks */
     uint32_t *order, *scratch_order;
     size_t texels_capacity;

@@ -38,9 +38,10 @@ void cone_kind_lay(struct arena *arena, const struct cone_plant *plant,
     const size_t texels = (size_t)volume->size[0] * (size_t)volume->size[1];
     shadow_volume_lay_plates(arena, volume);
     kind->passes =
-        shadow_room(arena, kind->passes, 3 * texels, &kind->texels_capacity, sizeof *kind->passes);
+        shadow_room(arena, kind->passes, 4 * texels, &kind->texels_capacity, sizeof *kind->passes);
     kind->firsts_m = kind->passes + texels;
     kind->lasts_m = kind->firsts_m + texels;
+    kind->taken = kind->lasts_m + texels;
     if (kind->cones)
         return;
     const size_t items = plant->twigs_count + plant->barks_count;
@@ -95,19 +96,39 @@ static float light_of(const struct cone_kind *kind, const float place_m[3], floa
     return area > 0 ? sum / area : 1;
 }
 
-static void darken(struct cone_kind *kind, const float place_m[3], float half_m, float opacity)
+/* Lays a square of an opacity into what an item takes. */
+static void lay(struct cone_kind *kind, const float place_m[3], float half_m, float opacity,
+                struct square *touched)
 {
     const struct square square = square_of(kind, place_m, half_m);
     const float depth_m = dot3(kind->volume.frame.axes[2], place_m);
     for (int32_t y = square.first[1]; y <= square.last[1]; y++)
         for (int32_t x = square.first[0]; x <= square.last[0]; x++) {
             const int32_t at = y * kind->volume.size[0] + x;
-            float share = share_of(&square, 0, x) * share_of(&square, 1, y);
-            kind->passes[at] *= 1 - opacity * share;
+            kind->taken[at] += opacity * share_of(&square, 0, x) * share_of(&square, 1, y);
             kind->firsts_m[at] = fminf(kind->firsts_m[at], depth_m - half_m);
             kind->lasts_m[at] = fmaxf(kind->lasts_m[at], depth_m + half_m);
         }
+    for (int k = 0; k < 2; k++) {
+        touched->first[k] =
+            touched->first[k] < square.first[k] ? touched->first[k] : square.first[k];
+        touched->last[k] = touched->last[k] > square.last[k] ? touched->last[k] : square.last[k];
+    }
 }
+
+/* Parts of one item lie beside each other: what they take of a texel is their sum. What is left of
+ * it is that of items by chance. */
+static void take(struct cone_kind *kind, const struct square *touched)
+{
+    for (int32_t y = touched->first[1]; y <= touched->last[1]; y++)
+        for (int32_t x = touched->first[0]; x <= touched->last[0]; x++) {
+            const int32_t at = y * kind->volume.size[0] + x;
+            kind->passes[at] *= 1 - fminf(kind->taken[at], 1);
+            kind->taken[at] = 0;
+        }
+}
+
+static const struct square untouched = {.first = {INT32_MAX, INT32_MAX}, .last = {-1, -1}};
 
 /* Where the needles of a cone are in the mean. */
 static void cone_middle(const struct cone_twig *twig, uint32_t cone, float place_m[3])
@@ -134,8 +155,10 @@ static void twig_pass(const struct cone_twig *twig, struct cone_kind *kind)
     float outline_m2 = 2 * twig->radius_m *
                        (from->spacing_m * flat +
                         0.5f * PI * twig->radius_m * fabsf(sun[2]) / (float)from->cones_count);
-    float half_m = 0.5f * sqrtf(outline_m2), place_m[3];
-    float opacity = 1 - expf(-needles_m2 / fmaxf(outline_m2, 1e-20f));
+    const float wide_m2 = fmaxf(4 * twig->radius_m * twig->radius_m, 1e-20f);
+    struct square touched = untouched;
+    float place_m[3], opacity = 1 - expf(-needles_m2 / fmaxf(outline_m2, 1e-20f));
+    opacity *= outline_m2 / wide_m2; /* cones nearer to each other than they are wide */
     for (uint32_t k = 0; k < from->cones_count; k++) {
         cone_middle(twig, k, place_m);
         kind->cones[twig->first_cone + k] =
@@ -143,8 +166,9 @@ static void twig_pass(const struct cone_twig *twig, struct cone_kind *kind)
     }
     for (uint32_t k = 0; k < from->cones_count; k++) {
         cone_middle(twig, k, place_m);
-        darken(kind, place_m, half_m, opacity);
+        lay(kind, place_m, twig->radius_m, opacity, &touched);
     }
+    take(kind, &touched);
 }
 
 static void bark_pass(const struct cone_bark *bark, struct cone_kind *kind, uint8_t *light)
@@ -157,6 +181,7 @@ static void bark_pass(const struct cone_bark *bark, struct cone_kind *kind, uint
     float right = dot3(way, kind->volume.frame.axes[0]), up = dot3(way, kind->volume.frame.axes[1]);
     float length_m = sqrtf(right * right + up * up);
     int count = (int)fminf(fmaxf(ceilf(length_m / (2 * radius_m + 1e-9f)), 1), 64);
+    struct square touched = untouched;
     float sum = 0;
     for (int pass = 0; pass < 2; pass++)
         for (int k = 0; k < count; k++) {
@@ -166,9 +191,11 @@ static void bark_pass(const struct cone_bark *bark, struct cone_kind *kind, uint
             if (pass == 0)
                 sum += light_of(kind, place_m, radius_m);
             else
-                darken(kind, place_m,
-                       0.5f * sqrtf(2 * radius_m * fmaxf(length_m / (float)count, radius_m)), 1);
+                lay(kind, place_m,
+                    0.5f * sqrtf(2 * radius_m * fmaxf(length_m / (float)count, radius_m)), 1,
+                    &touched);
         }
+    take(kind, &touched);
     *light = (uint8_t)(255 * sum / (float)count + 0.5f);
 }
 
@@ -192,6 +219,7 @@ void cone_kind_sweep(const struct cone_plant *plant, struct cone_kind *kind)
     const float *down = kind->volume.frame.axes[2];
     for (size_t k = 0; k < texels; k++) {
         kind->passes[k] = 1;
+        kind->taken[k] = 0;
         kind->firsts_m[k] = INFINITY;
         kind->lasts_m[k] = -INFINITY;
     }
