@@ -5,6 +5,7 @@
 #include "bake/cull.h"
 #include "bake/march_free.h"
 #include "bake/march_tree.h"
+#include "bake/sunlight_gl.h"
 #include "bake/tally.h"
 #include "bake/trees_gl.h"
 #include "method/method.h"
@@ -16,6 +17,7 @@
 struct options {
     int resolution, model;
     float stop, step, bias, smooth;
+    int shadows;
 };
 
 /* clang-format off */
@@ -29,11 +31,26 @@ static const struct option table[] = {
     OPTION(struct options, smooth, 0, 0, 1, "levels",
            "over which a level of detail turns into the next, both being drawn, and the last one into "
            "a point; 0: at once"),
+    OPTION(struct options, shadows, 0, 0, 512, "",
+           "cells of the sun's shadows along a plant's longest extent; 0: the sun casts none"),
     OPTION_END,
 };
 /* clang-format on */
 
-enum { CELLS, VOXELS, TREES, FIRSTS, ENTRIES, BUFFERS, DEPTH = BUFFERS, TEXTURES };
+enum {
+    CELLS,
+    VOXELS,
+    TREES,
+    FIRSTS,
+    ENTRIES,
+    BUFFERS,
+    DEPTH = BUFFERS,
+    SUN,
+    TEXTURES = SUN + SUNLIGHT_GL_UNITS
+};
+
+/* What a program draws: the picture; the same, its lookups counted; the shadow mask. */
+enum { DRAWN, COUNTED, MASKED, PROGRAMS };
 
 struct state {
     const struct scene *scene;
@@ -41,11 +58,18 @@ struct state {
     struct backdrop *backdrop;
     struct voxels_gl *voxels;
     struct trees_gl *trees;
+    struct sunlight_gl *sunlight; /* NULL: the sun has no shadows */
     struct cull *cull;
     struct tiles *tiles;
-    GLuint program, counting, vertices, framebuffer; /* counting: made when it is asked for */
+    GLuint programs[PROGRAMS], vertices, framebuffer; /* programs: made when they are asked for */
     GLuint buffers[BUFFERS], textures[BUFFERS];
 };
+
+static unsigned effects(const void *values)
+{
+    const struct options *options = values;
+    return EFFECTS_ALL & ~(unsigned)(options->shadows ? 0 : EFFECT_SUN_SHADOWS);
+}
 
 static enum status prepare_buffers(struct workspace *workspace, struct state *state)
 {
@@ -75,19 +99,36 @@ static enum status prepare_buffers(struct workspace *workspace, struct state *st
     return status;
 }
 
-static enum status make_program(struct workspace *workspace, const struct state *state, bool counts,
-                                GLuint *program)
+static enum status make_program(struct workspace *workspace, struct state *state, int kind)
 {
+    static const char *const kinds[PROGRAMS] = {"", "COUNT 1\n", "MASKED 1\n"};
     struct arena *scratch = arena_create(0);
     const char *defines = arena_printf(
-        scratch, "FULL %uu\nPROBES 2\nBIAS %d\nSOLID %g\n%s%s%s%s", MARCH_FULL, TREE_TEXELS_BIAS,
+        scratch, "FULL %uu\nPROBES 2\nBIAS %d\nSOLID %g\n%s%s%s%s%s", MARCH_FULL, TREE_TEXELS_BIAS,
         (double)march_solid, scene_is_stretched(state->scene) ? "STRETCHED 1\n" : "",
         state->options.smooth > 0 ? "SMOOTH 1\n" : "", state->options.model ? "ISOTROPIC 1\n" : "",
-        counts ? "COUNT 1\n" : "");
-    enum status status = gl_program(workspace->gl, "ray-texels-gl", ray_texels_gl_glsl, defines,
-                                    program, workspace->error);
+        state->sunlight ? "SHADOWS 1\n" : "", kinds[kind]);
+    enum status status = STATUS_OK;
+    if (!state->programs[kind])
+        status = gl_program(workspace->gl, "ray-texels-gl", ray_texels_gl_glsl, defines,
+                            &state->programs[kind], workspace->error);
     arena_destroy(scratch);
     return status;
+}
+
+/* Shadows of what is there, and the ground receives them. */
+static enum status prepare_sunlight(struct workspace *workspace, struct state *state)
+{
+    const struct sunlight_gl_request request = {.voxels = state->voxels,
+                                                .trees = trees_gl_trees(state->trees),
+                                                .model = state->options.model ? MARCH_ISOTROPIC
+                                                                              : MARCH_SGGX,
+                                                .cells = state->options.shadows};
+    if (!state->options.shadows || !(workspace->effects & EFFECT_SUN_SHADOWS))
+        return STATUS_OK;
+    enum status status = sunlight_gl_prepare(workspace, state->scene, &request, &state->sunlight);
+    trees_gl_shade(state->trees, state->sunlight);
+    return status ? status : backdrop_receive_sunlight(workspace, state->backdrop, state->sunlight);
 }
 
 static enum status prepare(struct workspace *workspace, const struct scene *scene,
@@ -109,9 +150,11 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
     state->trees =
         trees_gl_create(arena, scene, state->voxels, state->options.bias, state->options.smooth);
     state->tiles = tiles_create(arena, trees_gl_most(state->trees));
-    status = prepare_buffers(workspace, state);
+    status = prepare_sunlight(workspace, state);
     if (!status)
-        status = make_program(workspace, state, false, &state->program);
+        status = prepare_buffers(workspace, state);
+    if (!status)
+        status = make_program(workspace, state, DRAWN);
     return status ? status : gl_check(gl, "ray-texels-gl", workspace->error);
 }
 
@@ -119,7 +162,8 @@ static enum status prepare(struct workspace *workspace, const struct scene *scen
 static bool upload_trees(struct workspace *workspace, struct state *state, const struct view *view)
 {
     struct gl *gl = workspace->gl;
-    const float fog = workspace->effects & EFFECT_FOG ? state->scene->fog.density_per_m : 0;
+    const float fog =
+        workspace->effects & EFFECT_FOG && !workspace->masked ? state->scene->fog.density_per_m : 0;
     const struct tiles_rect *rects;
     const struct tree_texels *texels;
     struct cull_list list = cull_view(state->cull, view, CULL_FRONT_TO_BACK);
@@ -193,6 +237,8 @@ static void draw_trees(struct workspace *workspace, const struct state *state, G
         gl->BindTextureUnit(i, state->textures[i]);
     gl->BindTextureUnit(DEPTH, target->depth);
     set_uniforms(workspace, state, program, view);
+    if (state->sunlight)
+        sunlight_gl_bind(workspace, state->sunlight, program, SUN);
     gl->Disable(GL_DEPTH_TEST);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -213,14 +259,12 @@ static void draw_trees(struct workspace *workspace, const struct state *state, G
 static enum status count_trees(struct workspace *workspace, struct state *state,
                                const struct view *view, const struct target *target)
 {
-    enum status status = STATUS_OK;
     size_t rows = (size_t)target->height_px;
-    if (!state->counting)
-        status = make_program(workspace, state, true, &state->counting);
+    enum status status = make_program(workspace, state, COUNTED);
     if (status)
         return status;
     GLuint counters = tally_words_begin(workspace, 0, rows);
-    draw_trees(workspace, state, state->counting, view, target);
+    draw_trees(workspace, state, state->programs[COUNTED], view, target);
     workspace->tally.lookups += tally_words_end(workspace, counters, 0, rows);
     return STATUS_OK;
 }
@@ -230,15 +274,22 @@ static enum status draw(struct workspace *workspace, void *own, const struct vie
 {
     struct state *state = own;
     struct gl *gl = workspace->gl;
+    enum status status = STATUS_OK;
+    if (state->sunlight)
+        status = sunlight_gl_update(workspace, state->sunlight, view);
+    if (status)
+        return status;
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     backdrop_draw(workspace, state->backdrop, view);
     gl->Flush(); /* a software GL fills the backdrop while the trees are culled and binned */
     bool any = upload_trees(workspace, state, view);
-    enum status status = STATUS_OK;
+    const int kind = workspace->masked ? MASKED : DRAWN;
     if (any && workspace->counted)
         status = count_trees(workspace, state, view, target);
     else if (any)
-        draw_trees(workspace, state, state->program, view, target);
+        status = make_program(workspace, state, kind);
+    if (any && !workspace->counted && !status)
+        draw_trees(workspace, state, state->programs[kind], view, target);
     return status ? status : gl_check(gl, "ray-texels-gl", workspace->error);
 }
 
@@ -249,9 +300,10 @@ const struct method ray_texels_gl_method = {
     .summary = "rays marched through voxels of the plants, by OpenGL",
     .source = "Kajiya and Kay 1989, doi:10.1145/74334.74361; Neyret 1998, doi:10.1109/2945.675652; "
               "Heitz et al. 2015, doi:10.1145/2766988; Senegas 2001",
-    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_FOG,
+    .traits = EFFECT_TWO_SIDED | EFFECT_AMBIENT | EFFECT_SUN_SHADOWS | EFFECT_FOG | TRAIT_MASK,
     .options = table,
     .options_size = sizeof(struct options),
+    .effects = effects,
     .prepare = prepare,
     .draw = draw,
 };

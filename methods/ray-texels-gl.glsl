@@ -20,6 +20,12 @@ layout(binding = 3) uniform usamplerBuffer firsts;   // of each tile's entries
 layout(binding = 4) uniform usamplerBuffer entries;  // trees, tile by tile
 layout(binding = 5) uniform sampler2D depths;
 layout(location = 0) out vec4 color;
+#ifdef SHADOWS
+layout(binding = 6) uniform usamplerBuffer passes;   // of the sun's light, what reaches a cell, 0..255
+layout(binding = 7) uniform usamplerBuffer gains;    // of four corners over a tree the same, a byte each
+layout(binding = 8) uniform usamplerBuffer volumes;  // four texels each, harness/bake/sunlight_gl.c
+uniform vec2 light_terms;  // columns of gains; cells that bark takes its light nearer the sun
+#endif
 #ifdef COUNT
 layout(std430, binding = 0) buffer counts_buffer { uint counts[]; };  // lookups of a row of pixels
 #endif
@@ -85,8 +91,54 @@ vec4 sample_voxel(uvec4 words, float span, form eye, form sun, form both, float 
     diffuse *= inversesqrt(1.0 + raise * float(words.z >> 6 & 63u) / 63.0);
 #endif
 #endif
-    return vec4(bytes(words.w) * (in_shade + in_sun * max(diffuse, 0.0)), exp(-depth * span));
+#ifdef MASKED
+    // The shadow mask in place of light, of what faces the sun.
+    vec3 rgb = vec3(in_sun.r * clamp(1.0 + 0.5 * one_sided * (toward / even - 1.0), 0.0, 1.0), 1.0, 0.0);
+#else
+    vec3 rgb = bytes(words.w) * (in_shade + in_sun * max(diffuse, 0.0));
+#endif
+    return vec4(rgb, exp(-depth * span));
 }
+
+#ifdef SHADOWS
+// A plant's volume of light as a ray goes through it.
+struct volume {
+    vec3 start, way;  // in its cells: where the ray begins; a voxel on
+    vec3 size;
+    int first_cell, first_gain;
+};
+
+volume volume_of(int tree, vec3 start, vec3 u, int first_gain)
+{
+    int at = 4 * int(texelFetch(trees, tree).w);
+    vec4 x = uintBitsToFloat(texelFetch(volumes, at)), y = uintBitsToFloat(texelFetch(volumes, at + 1));
+    vec4 z = uintBitsToFloat(texelFetch(volumes, at + 2));
+    uvec4 size = texelFetch(volumes, at + 3);
+    volume v;
+    v.start = vec3(dot(x.xyz, start) + x.w, dot(y.xyz, start) + y.w, dot(z.xyz, start) + z.w);
+    v.way = vec3(dot(x.xyz, u), dot(y.xyz, u), dot(z.xyz, u));
+    v.size = vec3(size.xyz);
+    v.first_cell = int(size.w);
+    v.first_gain = first_gain;
+    return v;
+}
+
+// Share of the sun's light so many voxels along the ray; bark: its share of what is there.
+float sun_share(volume v, float along, float bark, vec2 terms)
+{
+    vec3 at = v.start + along * v.way;
+    at.z -= max(4.0 * bark - 3.0, 0.0) * terms.y;
+    at = clamp(at, vec3(0.0), v.size - vec3(0.001, 0.001, 1.001));
+    vec3 cell = floor(at);
+    int column = v.first_cell + (int(cell.y) * int(v.size.x) + int(cell.x)) * int(v.size.z) + int(cell.z);
+    float pass = mix(float(texelFetch(passes, column).r), float(texelFetch(passes, column + 1).r), at.z - cell.z);
+    vec2 over = min(at.xy * (terms.x - 1.0) / v.size.xy, vec2(terms.x - 1.001)), corner = floor(over);
+    over -= corner;
+    uint four = texelFetch(gains, v.first_gain + int(corner.y * terms.x + corner.x)).r;
+    vec2 along_y = mix(vec2(four & 255u, four >> 16 & 255u), vec2(four >> 8 & 255u, four >> 24), over.x);
+    return pass * mix(along_y.x, along_y.y, over.y) / 65025.0;
+}
+#endif
 
 // Of what is behind the trees, along the view.
 float depth_at(ivec2 pixel)
@@ -128,10 +180,21 @@ void main()
     float left = 1.0;
     // Uniforms are read here: in a loop llvmpipe gathers them lane by lane each time.
     vec3 in_shade = ambient, in_sun = sun_radiance, to_sun = sun_direction, fog = fog_color;
+#ifdef MASKED
+    in_sun = vec3(1.0);
+#endif
     float near = limits.x, least = limits.y, long_step = limits.z, short_step = min(limits.z, 1.0), sides = limits.w;
+#ifdef SHADOWS
+    vec2 terms = light_terms;
+#endif
     vec3 sum = vec3(0.0);
 #ifdef COUNT
-    uint lookups = 0u;  // a cell is one, a voxel two, as the CPU's march counts them
+#ifdef SHADOWS
+    const uint voxel_lookups = 5u;
+#else
+    const uint voxel_lookups = 2u;
+#endif
+    uint lookups = 0u;  // a cell is one, a voxel two, its shadow three, as the CPU's march counts them
 #endif
     // A software GL runs both sides of each branch, and the body of a loop once more than its test at the top allows:
     // loops are tested at their end, and what is not met has no share. What is read behind a loop must then be
@@ -141,7 +204,12 @@ void main()
         int first = max(tree, 0);
         uvec4 looks = texelFetch(trees, first + 1);  // first cell, size, shares, albedo
         vec4 where = uintBitsToFloat(texelFetch(trees, first + 2));
+#ifdef SHADOWS
+        uvec4 last = texelFetch(trees, first + 3);
+        vec2 turn = uintBitsToFloat(last.xy);
+#else
         vec2 turn = uintBitsToFloat(texelFetch(trees, first + 3).xy);
+#endif
         float clear = float(looks.z & 65535u) / 65535.0;
 #ifdef SMOOTH
         float drawn = float(looks.z >> 16) / 65535.0;  // of the tree's optical depth
@@ -162,7 +230,11 @@ void main()
 #endif
         form f_eye = form_of(u, u), f_sun = form_of(l, l), f_both = form_of(-u, l);
         vec3 size = vec3(looks.y & 1023u, looks.y >> 10 & 1023u, looks.y >> 20 & 1023u);
+#ifdef MASKED
+        const float white = 1.0;
+#else
         vec3 white = vec3(looks.w & 1023u, looks.w >> 10 & 1023u, looks.w >> 20 & 1023u) / (1023.0 * 255.0);
+#endif
 
         // The ray from where it enters the box, in voxels.
         float weight = 1.0, along = 0.0, span;
@@ -182,6 +254,10 @@ void main()
             span = min(min(high.x, depth * scale), min(high.y, high.z)) - from;
             start = where.xyz + from * u;
         }
+#ifdef SHADOWS
+        volume light = volume_of(first, start, u, int(last.z));
+        float lit = uintBitsToFloat(last.w);
+#endif
         if (tree < 0)
             span = 0.0;
         float thick = (looks.y >> 31) != 0u ? SOLID : 1.0;  // the eye is in the tree's bark
@@ -194,10 +270,10 @@ void main()
         do {
             // Through empty space.
             uint cell = 0u;
-            float pace = 0.0;
+            float pace = 0.0, middle = 0.0;
             for (int probe = 0; probe < PROBES; probe++) {
                 pace = clamp(span - along, 0.0, stride);
-                float middle = along + 0.5 * pace;
+                middle = along + 0.5 * pace;
                 ivec3 p = ivec3(clamp(start + middle * u, vec3(0.0), most));
 #ifdef COUNT
                 lookups += pace > 0.0 && cell < FULL ? 1u : 0u;  // else it finds the same again
@@ -209,11 +285,16 @@ void main()
                 }
             }
             bool empty = cell < FULL;
-            vec4 met = sample_voxel(texelFetch(voxels, empty ? 0 : int(cell & ~FULL)),
-                                    empty ? 0.0 : drawn * thick * pace, f_eye,
-                                    f_sun, f_both, rise * rise - 1.0, in_shade, in_sun, sides);
+            uvec4 words = texelFetch(voxels, empty ? 0 : int(cell & ~FULL));
+            vec3 sunny = in_sun;
+#ifdef SHADOWS
+            float shine = sun_share(light, middle, float(words.w >> 28) * (1.0 / 15.0), terms);
+            sunny *= lit < 0.0 ? shine : lit;
+#endif
+            vec4 met = sample_voxel(words, empty ? 0.0 : drawn * thick * pace, f_eye,
+                                    f_sun, f_both, rise * rise - 1.0, in_shade, sunny, sides);
 #ifdef COUNT
-            lookups += empty || pace == 0.0 ? 0u : 2u;
+            lookups += empty || pace == 0.0 ? 0u : voxel_lookups;
 #endif
             along += empty ? 0.0 : stride;
             stride = empty ? stride : long_step;

@@ -119,30 +119,43 @@ static void test_ray_texels_gl__leaves_that_lie_alike_are_lit_as_one(void **stat
     arena_destroy(arena);
 }
 
-static struct frame *draw_on_cpu(struct arena *arena, const char *options, enum lod lod,
-                                 const struct scene *scene, unsigned effects,
-                                 const struct view *view)
+/* The march on the CPU, made ready. */
+struct on_cpu {
+    struct error error;
+    struct workspace workspace;
+    void *own;
+};
+
+static struct on_cpu *cpu_ready(struct arena *arena, const char *options, enum lod lod,
+                                const struct scene *scene, unsigned effects)
 {
     const struct method *method = tree_method("ray-texels");
-    struct error error = {0};
-    struct frame *frame = frame_create(arena, view->width_px, view->height_px, false);
+    struct on_cpu *cpu = ARENA_NEW(arena, struct on_cpu);
+    void *values = arena_alloc(arena, 1, method->options_size);
+    cpu->workspace = (struct workspace){.arena = arena,
+                                        .error = &cpu->error,
+                                        .effects = effects,
+                                        .lod = lod,
+                                        .format = TARGET_RGBA32F,
+                                        .threads = 2};
+    options_default(method->options, values);
+    if (options_parse(method->options, options, values, &cpu->error) != STATUS_OK ||
+        options_parse(method->options, "tile=8,far=0", values, &cpu->error) != STATUS_OK ||
+        method->prepare(&cpu->workspace, scene, values, &cpu->own) != STATUS_OK)
+        fail_msg("%s", cpu->error.text);
+    return cpu;
+}
+
+static struct frame *cpu_draw(struct on_cpu *cpu, const struct view *view)
+{
+    struct frame *frame =
+        frame_create(cpu->workspace.arena, view->width_px, view->height_px, false);
     struct target target = {.width_px = view->width_px,
                             .height_px = view->height_px,
                             .format = TARGET_RGBA32F,
                             .pixels = frame->rgba};
-    struct workspace workspace = {.arena = arena,
-                                  .error = &error,
-                                  .effects = effects,
-                                  .lod = lod,
-                                  .format = TARGET_RGBA32F,
-                                  .threads = 2};
-    void *values = arena_alloc(arena, 1, method->options_size), *own = NULL;
-    options_default(method->options, values);
-    if (options_parse(method->options, options, values, &error) != STATUS_OK ||
-        options_parse(method->options, "tile=8,far=0", values, &error) != STATUS_OK ||
-        method->prepare(&workspace, scene, values, &own) != STATUS_OK ||
-        method->draw(&workspace, own, view, &target) != STATUS_OK)
-        fail_msg("%s", error.text);
+    if (tree_method("ray-texels")->draw(&cpu->workspace, cpu->own, view, &target) != STATUS_OK)
+        fail_msg("%s", cpu->error.text);
     return frame;
 }
 
@@ -175,8 +188,8 @@ static void test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws(void **sta
         if (scene_load(arena, cases[k].scene, &request, &scene, &error) != STATUS_OK)
             fail_msg("%s", error.text);
         view_at(scene, 0.3, &view);
-        struct frame *cpu =
-            draw_on_cpu(arena, cases[k].options, cases[k].lod, scene, cases[k].effects, &view);
+        struct frame *cpu = cpu_draw(
+            cpu_ready(arena, cases[k].options, cases[k].lod, scene, cases[k].effects), &view);
         struct frame *gl =
             tree_draw_as(arena, tree_method("ray-texels-gl"), cases[k].options, cases[k].lod,
                          TARGET_RGBA32F, scene, cases[k].effects, &view, NULL);
@@ -187,6 +200,100 @@ static void test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws(void **sta
                      cases[k].options, rmse, covered, off, mirrored);
         arena_destroy(arena);
     }
+}
+
+enum { SUNS = 4 };
+static const float suns[SUNS][3] = {
+    {0.77f, 0.57f, 0.28f}, {0, 1, 0}, {-0.28f, 0, 0.96f}, {0.77f, -0.57f, 0.28f}};
+
+/* Pictures of a forest under some of the suns, on the CPU and by OpenGL. */
+static void forest_draw(struct arena *arena, const struct scene *scene, const char *options,
+                        unsigned effects, int count, struct frame *pictures[SUNS][2])
+{
+    struct on_cpu *cpu = cpu_ready(arena, options, LOD_HIGH, scene, effects);
+    struct studio studio = {
+        .method = tree_method("ray-texels-gl"),
+        .workspace = {
+            .arena = arena, .effects = effects, .lod = LOD_HIGH, .format = TARGET_RGBA32F}};
+    struct view view;
+    view_at(scene, 0.3, &view);
+    studio_prepare(&studio, options, scene, view.width_px, view.height_px);
+    for (int sun = 0; sun < count; sun++) {
+        memcpy(view.sun_direction, suns[sun], sizeof suns[sun]);
+        pictures[sun][0] = cpu_draw(cpu, &view);
+        pictures[sun][1] = studio_draw(&studio, &view);
+    }
+    studio_close(&studio);
+}
+
+/* Apart no more than without shadows. */
+static void forest_check(struct frame *plain[2], struct frame *shaded[2], int sun)
+{
+    double rmse = tree_rmse(shaded[0], shaded[1]), plainly = tree_rmse(plain[0], plain[1]);
+    double shadows = tree_rmse(shaded[0], plain[0]), left[2];
+    for (int gl = 0; gl < 2; gl++)
+        left[gl] = tree_mean(shaded[gl], 1) / tree_mean(plain[gl], 1);
+    printf("# sun %d: rmse %.4f (%.4f without) of %.4f, light %.4f, on the CPU %.4f\n", sun, rmse,
+           plainly, shadows, left[1], left[0]);
+    if (!(rmse < 1.3 * plainly && rmse < 0.2 * shadows && fabs(left[1] - left[0]) < 0.006))
+        fail_msg("sun %d: rmse %g, %g without, shadows %g, light left %g, on the CPU %g", sun, rmse,
+                 plainly, shadows, left[1], left[0]);
+}
+
+/* Level ground and relief; the sun from its highest to below the ground; trees that are near, and
+ * trees below a pixel, which shade each other. */
+static void test_ray_texels_gl__the_sun_shades_as_in_the_march_on_the_cpu(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *scene, *options;
+        size_t trees;
+        int suns;
+    } cases[] = {
+        {"forest-shadows", "resolution=32,step=1,shadows=16", 12, SUNS},
+        {"poplar-forest", "resolution=32,step=1,shadows=16,model=isotropic", 200, 1},
+        {"poplar-forest", "resolution=16,step=1,shadows=16", 20000, 1},
+    };
+    setenv("TREELINE_CACHE", "off", 1);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct arena *arena = arena_create(0);
+        const struct scene_request request = {cases[k].trees, 1, 64, 48};
+        struct error error = {0};
+        struct scene *scene;
+        struct frame *plain[SUNS][2], *shaded[SUNS][2];
+        if (scene_load(arena, cases[k].scene, &request, &scene, &error) != STATUS_OK)
+            fail_msg("%s", error.text);
+        forest_draw(arena, scene, cases[k].options, lit, cases[k].suns, plain);
+        forest_draw(arena, scene, cases[k].options, lit | EFFECT_SUN_SHADOWS, cases[k].suns,
+                    shaded);
+        for (int sun = 0; sun < cases[k].suns; sun++)
+            forest_check(plain[sun], shaded[sun], sun);
+        arena_destroy(arena);
+    }
+}
+
+static void test_ray_texels_gl__a_sun_that_has_moved_shades_as_one_that_stood_there(void **state)
+{
+    (void)state;
+    static const char options[] = "resolution=32,shadows=16";
+    struct arena *arena = arena_create(0);
+    struct plant *plant = plant_from_mesh(arena, "tree", tree_mesh(arena, 300));
+    struct scene *scene = tree_scene(arena, plant, 1, 0);
+    const unsigned effects = lit | EFFECT_SUN_SHADOWS;
+    struct view view = tree_view(scene, 0.5f, 0.4f, 40, 12);
+    struct studio studio;
+    struct frame *moved = NULL;
+    setenv("TREELINE_CACHE", "off", 1);
+    studio_open(&studio, arena, tree_method("ray-texels-gl"), options, LOD_HIGH, scene, effects);
+    for (int i = 0; i < 3; i++) { /* there, elsewhere, and back */
+        memcpy(view.sun_direction, suns[i % 2], sizeof suns[0]);
+        moved = studio_draw(&studio, &view);
+    }
+    studio_close(&studio);
+    struct frame *stood =
+        tree_draw(arena, tree_method("ray-texels-gl"), options, scene, effects, &view, NULL);
+    assert_memory_equal(moved->rgba, stood->rgba, 4 * sizeof(float) * TREE_PIXELS);
+    arena_destroy(arena);
 }
 
 /* The level that a pixel asks for grows by one in equal parts, of a still tree: at once all of it
@@ -279,6 +386,8 @@ int main(void)
         cmocka_unit_test(test_ray_texels_gl__a_tree_in_another_hides_what_is_left),
         cmocka_unit_test(test_ray_texels_gl__leaves_that_lie_alike_are_lit_as_one),
         cmocka_unit_test(test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws),
+        cmocka_unit_test(test_ray_texels_gl__the_sun_shades_as_in_the_march_on_the_cpu),
+        cmocka_unit_test(test_ray_texels_gl__a_sun_that_has_moved_shades_as_one_that_stood_there),
         cmocka_unit_test(test_ray_texels_gl__a_level_turns_into_the_next_without_a_jump),
         cmocka_unit_test(test_tiles__hold_what_touches_them_in_order),
         cmocka_unit_test(test_tiles__grow_until_all_fits),

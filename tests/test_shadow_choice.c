@@ -88,6 +88,7 @@ static void test_shadow_choice__each_method_is_shaded_as_traced(void **state)
         {"texels", "resolution=32,slices=16", "map", 0.035, 0.155},
         {"shaded-texels", "resolution=32,slices=16", "map", 0.035, 0.13},
         {"jakulin", "resolution=32,slices=16", "map", 0.035, 0.13},
+        {"ray-texels-gl", "resolution=64,shadows=64", NULL, 0.025, 0.16}, /* its own */
     };
     struct arena *arena = arena_create(0);
     struct error error = {0};
@@ -98,8 +99,10 @@ static void test_shadow_choice__each_method_is_shaded_as_traced(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct frame *picture, *drawn_mask;
         struct mask_error mask;
-        const char *options = arena_printf(arena, "%s,shadow=%s,shadow_size=512,cascades=1",
-                                           rows[i].options, rows[i].shadow);
+        const char *options = rows[i].shadow
+                                  ? arena_printf(arena, "%s,shadow=%s,shadow_size=512,cascades=1",
+                                                 rows[i].options, rows[i].shadow)
+                                  : rows[i].options;
         drawn(arena, rows[i].method, options, scene, shadowed, &picture, &drawn_mask);
         if (mask_compare(drawn_mask, true_mask, &mask, &error) != STATUS_OK)
             fail_msg("%s: %s", rows[i].method, error.text);
@@ -232,7 +235,8 @@ static void test_shadow_choice__none_draws_the_same_whether_shadows_are_wanted_o
     struct scene *scene = world_of(arena, 1);
     static const char *const methods[][2] = {{"polygons", ""},
                                              {"billboards", "resolution=32,views=4"},
-                                             {"shaded-texels", "resolution=16,slices=8"}};
+                                             {"shaded-texels", "resolution=16,slices=8"},
+                                             {"ray-texels-gl", "resolution=16"}};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         struct frame *pictures[2], *mask;
         for (int wanted = 0; wanted < 2; wanted++)

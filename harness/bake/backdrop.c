@@ -6,6 +6,7 @@
 #include "bake/cull.h"
 #include "bake/horizon.h"
 #include "bake/shadow_map.h"
+#include "bake/sun_receiver.h"
 
 #include "backdrop.glsl.h"
 
@@ -32,7 +33,7 @@ struct backdrop {
     struct chunk *chunks;
     struct backdrop_levels *levels; /* instead of the chunks; NULL: every triangle */
     struct horizon *horizon;
-    const struct shadow_map *shadows; /* received; NULL: none */
+    struct sun_receiver receiver;
     GLuint shadowed_program;
 };
 
@@ -184,17 +185,29 @@ enum status backdrop_prepare(struct workspace *workspace, const struct scene *sc
     return status == STATUS_OK ? gl_check(gl, "backdrop", workspace->error) : status;
 }
 
+static enum status receive(struct workspace *workspace, struct backdrop *backdrop)
+{
+    if (backdrop->levels)
+        return backdrop_levels_receive(workspace, backdrop->levels, &backdrop->receiver);
+    if (backdrop->chunks_count == 0)
+        return STATUS_OK;
+    return sun_receiver_program(workspace, &backdrop->receiver, "shadowed terrain", backdrop_glsl,
+                                terrain_defines(workspace, backdrop->scene),
+                                &backdrop->shadowed_program);
+}
+
 enum status backdrop_receive(struct workspace *workspace, struct backdrop *backdrop,
                              const struct shadow_map *map)
 {
-    backdrop->shadows = map;
-    if (backdrop->levels)
-        return backdrop_levels_receive(workspace, backdrop->levels, map);
-    if (backdrop->chunks_count == 0)
-        return STATUS_OK;
-    return shadow_map_program(workspace, map, "shadowed terrain", backdrop_glsl,
-                              terrain_defines(workspace, backdrop->scene),
-                              &backdrop->shadowed_program);
+    backdrop->receiver = (struct sun_receiver){.map = map};
+    return receive(workspace, backdrop);
+}
+
+enum status backdrop_receive_sunlight(struct workspace *workspace, struct backdrop *backdrop,
+                                      const struct sunlight_gl *sunlight)
+{
+    backdrop->receiver = (struct sun_receiver){.sunlight = sunlight};
+    return receive(workspace, backdrop);
 }
 
 bool backdrop_cast_view(struct workspace *workspace, const struct backdrop *backdrop,
@@ -237,8 +250,8 @@ enum status backdrop_skyline(struct workspace *workspace, struct backdrop *backd
     gl->TextureParameteri(backdrop->skylines, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     const char *defines = arena_printf(workspace->arena, "SKYLINE 1\n%s",
                                        terrain_defines(workspace, backdrop->scene));
-    return shadow_receiver_program(workspace, backdrop->shadows, "skyline", backdrop_glsl, defines,
-                                   &backdrop->skyline_program);
+    return sun_receiver_program(workspace, &backdrop->receiver, "skyline", backdrop_glsl, defines,
+                                &backdrop->skyline_program);
 }
 
 static void skyline_uniforms(struct gl *gl, const struct backdrop *backdrop,
@@ -286,7 +299,7 @@ static GLuint terrain_program_of(const struct workspace *workspace, const struct
 {
     if (backdrop->skyline_program)
         return backdrop->skyline_program;
-    if (backdrop->shadows)
+    if (sun_receiver_is_shaded(&backdrop->receiver))
         return backdrop->shadowed_program;
     bool smooth = above && backdrop->smooth_program && !workspace->masked;
     return smooth ? backdrop->smooth_program : backdrop->terrain_program;
@@ -308,7 +321,7 @@ static void draw_terrain(struct workspace *workspace, struct backdrop *backdrop,
     gl->UseProgram(program);
     gl->BindVertexArray(backdrop->terrain_vertices);
     shade_uniforms(workspace, program, scene, view);
-    shadow_receiver_uniforms(workspace, backdrop->shadows, program);
+    sun_receiver_uniforms(workspace, &backdrop->receiver, program);
     if (program == backdrop->smooth_program)
         smooth_uniforms(workspace, program, scene);
     else
@@ -381,24 +394,4 @@ void backdrop_draw(struct workspace *workspace, struct backdrop *backdrop, const
     draw_terrain(workspace, backdrop, view);
     draw_sky(workspace, backdrop, view);
     horizon_draw(workspace, backdrop->horizon, view);
-}
-
-void shade_uniforms(struct workspace *workspace, GLuint program, const struct scene *scene,
-                    const struct view *view)
-{
-    struct gl *gl = workspace->gl;
-    static const float none[3] = {0, 0, 0};
-    unsigned effects = workspace->effects;
-    const float *ambient = effects & EFFECT_AMBIENT ? scene->ambient : none;
-    gl->UniformMatrix4fv(gl_uniform(gl, program, "view_projection"), 1, GL_FALSE,
-                         view->view_projection[0]);
-    gl->Uniform3fv(gl_uniform(gl, program, "eye_m"), 1, view->eye_m);
-    gl->Uniform3fv(gl_uniform(gl, program, "sun_direction"), 1, view->sun_direction);
-    gl->Uniform3fv(gl_uniform(gl, program, "sun_radiance"), 1, scene->sun.radiance);
-    gl->Uniform3fv(gl_uniform(gl, program, "ambient"), 1, ambient);
-    gl->Uniform3fv(gl_uniform(gl, program, "fog_color"), 1, scene->fog.color);
-    gl->Uniform1f(gl_uniform(gl, program, "fog_density"),
-                  effects & EFFECT_FOG && !workspace->masked ? scene->fog.density_per_m : 0);
-    gl->Uniform1i(gl_uniform(gl, program, "masked"), workspace->masked);
-    gl->Uniform1i(gl_uniform(gl, program, "two_sided"), (effects & EFFECT_TWO_SIDED) != 0);
 }

@@ -1,6 +1,6 @@
 // Sky and terrain. SKY: one triangle over the picture; else the terrain's mesh. SMOOTH: seen from above, and bent so
 // little that N.L may be interpolated instead of N. FOG: with fog. COLORS: of each vertex.
-// SHADOWED: behind shadow_map.glsl. SKYLINE: in the shadow of horizon maps.
+// SHADOWED: behind shadow_map.glsl or sunlight.glsl. SKYLINE: in the shadow of horizon maps.
 #if defined(FOG) || defined(SKYLINE) || defined(SHADOWED)
 #define PLACED
 #endif

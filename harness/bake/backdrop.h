@@ -11,9 +11,13 @@ enum status backdrop_prepare(struct workspace *workspace, const struct scene *sc
                              struct backdrop **backdrop);
 struct shadow_map;
 struct shadow_pass;
+struct sunlight_gl;
 /* The ground receives the map's shadows from now on. */
 enum status backdrop_receive(struct workspace *workspace, struct backdrop *backdrop,
                              const struct shadow_map *map);
+/* The same of the march's light. */
+enum status backdrop_receive_sunlight(struct workspace *workspace, struct backdrop *backdrop,
+                                      const struct sunlight_gl *sunlight);
 /* Before a map's passes for a view: ground that is drawn by levels of detail casts what the view
  * shows of it. True where that is not what cast before. */
 bool backdrop_cast_view(struct workspace *workspace, const struct backdrop *backdrop,

@@ -10,8 +10,8 @@
 struct backdrop_levels {
     const struct scene *scene;
     struct terrain_levels *levels;
-    GLuint program, normals, colors;  /* colors 0: none */
-    const struct shadow_map *shadows; /* received; NULL: none */
+    GLuint program, normals, colors; /* colors 0: none */
+    struct sun_receiver receiver;
     struct drawn {
         GLuint vertices, indices;
         size_t indices_room, count;
@@ -75,8 +75,8 @@ static enum status prepare_program(struct workspace *workspace, struct backdrop_
     bool fog = workspace->effects & EFFECT_FOG && scene->fog.density_per_m > 0;
     const char *defines = arena_printf(workspace->arena, "%s%s", fog ? "FOG 1\n" : "",
                                        scene->terrain.colors ? "COLORS 1\n" : "");
-    return shadow_receiver_program(workspace, levels->shadows, "terrain levels",
-                                   backdrop_levels_glsl, defines, &levels->program);
+    return sun_receiver_program(workspace, &levels->receiver, "terrain levels",
+                                backdrop_levels_glsl, defines, &levels->program);
 }
 
 /* An array of heights alone. */
@@ -113,9 +113,9 @@ enum status backdrop_levels_prepare(struct workspace *workspace, const struct sc
 }
 
 enum status backdrop_levels_receive(struct workspace *workspace, struct backdrop_levels *levels,
-                                    const struct shadow_map *map)
+                                    const struct sun_receiver *receiver)
 {
-    levels->shadows = map;
+    levels->receiver = *receiver;
     levels->casters.vertices = vertices_of(workspace->gl, levels->heights);
     return prepare_program(workspace, levels);
 }
@@ -182,7 +182,7 @@ void backdrop_levels_draw(struct workspace *workspace, struct backdrop_levels *l
     gl->BindVertexArray(levels->seen.vertices);
     indices_put(gl, &levels->seen, indices, count);
     shade_uniforms(workspace, program, scene, view);
-    shadow_receiver_uniforms(workspace, levels->shadows, program);
+    sun_receiver_uniforms(workspace, &levels->receiver, program);
     gl->Uniform3fv(gl_uniform(gl, program, "albedo"), 1, terrain->albedo);
     place_uniforms(gl, program, terrain);
     gl->BindTextureUnit(0, levels->normals);

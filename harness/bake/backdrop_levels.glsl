@@ -1,6 +1,6 @@
 // A terrain by levels of detail: vertices from their number and height, normals and colours from textures of the full
 // grid, so that they do not change with the level. FOG: with fog. COLORS: of each vertex. SHADOWED: behind
-// shadow_map.glsl.
+// shadow_map.glsl or sunlight.glsl.
 #pragma stage vertex
 layout(location = 0) in float height_m;
 uniform int samples_x;

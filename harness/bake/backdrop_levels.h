@@ -3,6 +3,7 @@
 #define TREELINE_BAKE_BACKDROP_LEVELS_H
 
 #include "bake/shadow_map.h"
+#include "bake/sun_receiver.h"
 
 struct backdrop_levels;
 
@@ -15,9 +16,9 @@ enum status backdrop_levels_prepare(struct workspace *workspace, const struct sc
  */
 void backdrop_levels_draw(struct workspace *workspace, struct backdrop_levels *levels,
                           const struct view *view, bool above);
-/* Receives the map's shadows from now on. */
+/* Receives shadows from now on. */
 enum status backdrop_levels_receive(struct workspace *workspace, struct backdrop_levels *levels,
-                                    const struct shadow_map *map);
+                                    const struct sun_receiver *receiver);
 /* What casts into a view: every chunk at the level that the view draws it at, or would. True where
  * that is not what cast before. */
 bool backdrop_levels_cast_view(struct workspace *workspace, struct backdrop_levels *levels,

@@ -2,7 +2,6 @@
  * all threads. */
 #include "bake/march_frame.h"
 
-#include <math.h>
 #include <string.h>
 
 static march_kernel *kernel_named(const char *name)
@@ -14,34 +13,24 @@ static march_kernel *kernel_named(const char *name)
     return isas[chosen].kernel;
 }
 
-static enum status species_fill(struct workspace *workspace, struct plant *plant,
-                                const struct march_options *options, struct march_species *species,
-                                struct cull_bound *bound)
+static enum status species_prepare(struct workspace *workspace, struct plant *plant,
+                                   const struct march_options *options,
+                                   struct march_species *species, struct cull_bound *bound)
 {
     const struct mesh *mesh;
-    enum status status = voxels_of_plant(workspace->arena, plant, options->resolution,
-                                         &species->voxels, workspace->error);
+    const struct voxels *voxels;
+    enum status status =
+        voxels_of_plant(workspace->arena, plant, options->resolution, &voxels, workspace->error);
     if (!status)
         status = plant_mesh(plant, &mesh, workspace->error);
     if (status)
         return status;
     if (options->model == MARCH_NOMA)
-        species->voxels = voxels_noma(workspace->arena, species->voxels);
+        voxels = voxels_noma(workspace->arena, voxels);
     if (options->model == MARCH_VISIBLE)
-        species->voxels = voxels_visible(workspace->arena, species->voxels);
-    for (uint32_t level = 0; level < species->voxels->levels_count; level++)
-        species->cells[level] = march_free_cells(workspace->arena, &species->voxels->levels[level]);
+        voxels = voxels_visible(workspace->arena, voxels);
     *bound = cull_bound_of(mesh);
-    species->mesh = mesh;
-    species->is_solid = mesh_is_solid(mesh);
-    float square = 0;
-    for (int i = 0; i < 3; i++) {
-        float half = 0.5f * (mesh->maximum_m[i] - mesh->minimum_m[i]);
-        species->center_m[i] = mesh->minimum_m[i] + half;
-        species->half_m[i] = half;
-        square += half * half;
-    }
-    species->radius_m = sqrtf(square);
+    march_species_fill(workspace->arena, voxels, mesh, species);
     return STATUS_OK;
 }
 
@@ -58,8 +47,8 @@ enum status march_prepare(struct workspace *workspace, const struct scene *scene
     struct cull_bound *bounds =
         ARENA_ARRAY(workspace->arena, struct cull_bound, scene->species_count);
     for (size_t i = 0; i < scene->species_count && !status; i++)
-        status = species_fill(workspace, scene->species[i].plant, options, &march->species[i],
-                              &bounds[i]);
+        status = species_prepare(workspace, scene->species[i].plant, options, &march->species[i],
+                                 &bounds[i]);
     if (status)
         return status;
     march->trees = ARENA_ARRAY(workspace->arena, struct march_tree, scene->instances_count);

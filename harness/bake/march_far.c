@@ -68,6 +68,23 @@ static void far_sun_add(const struct march_job *job, march_kernel *kernel, float
             far->sun_rgb[c] += rays.rgb[at][c];
 }
 
+float march_far_lit(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
+                    float y_px, march_kernel *kernel)
+{
+    struct march_view sun = *picture;
+    struct march_far far[2];
+    struct march_sprite sprite;
+    float seen[2] = {0, 0};
+    sun.effects &= ~(unsigned)EFFECT_AMBIENT;
+    for (int shaded = 0; shaded < 2; shaded++) {
+        sun.shadows = shaded ? picture->shadows : NULL;
+        march_far_fill(&sun, species, turn, x_px, y_px, kernel, &far[shaded], &sprite);
+        for (int c = 0; c < 3; c++)
+            seen[shaded] += far[shaded].rgb[c];
+    }
+    return seen[0] > 0 ? seen[1] / seen[0] : 1;
+}
+
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
                     float y_px, march_kernel *kernel, struct march_far *far,
                     struct march_sprite *sprite)

@@ -201,6 +201,24 @@ static void fog_fill(const struct march_view *picture, const struct march_box *b
         job->fog[c] = (1 - job->clear) * picture->scene->fog.color[c];
 }
 
+void march_species_fill(struct arena *arena, const struct voxels *voxels, const struct mesh *mesh,
+                        struct march_species *species)
+{
+    float square = 0;
+    species->voxels = voxels;
+    species->mesh = mesh;
+    species->is_solid = mesh_is_solid(mesh);
+    for (uint32_t level = 0; level < voxels->levels_count; level++)
+        species->cells[level] = march_free_cells(arena, &voxels->levels[level]);
+    for (int i = 0; i < 3; i++) {
+        float half = 0.5f * (mesh->maximum_m[i] - mesh->minimum_m[i]);
+        species->center_m[i] = mesh->minimum_m[i] + half;
+        species->half_m[i] = half;
+        square += half * half;
+    }
+    species->radius_m = sqrtf(square);
+}
+
 void march_job_aim(const struct march_view *picture, const struct march_tree *tree, float x_px,
                    float y_px, float voxel_m, struct march_job *job)
 {

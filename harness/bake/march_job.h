@@ -18,6 +18,10 @@ struct march_species {
     bool is_solid;     /* its leaves are needles, lit on the outside alone */
 };
 
+/* voxels: of the plant, or made of them; mesh: the plant's. */
+void march_species_fill(struct arena *arena, const struct voxels *voxels, const struct mesh *mesh,
+                        struct march_species *species);
+
 struct march_shadows;
 
 /* Constants of a picture. */
@@ -87,6 +91,10 @@ struct march_sprite {
     float sums[SPRITE_SIDE + 1][SPRITE_SIDE + 1][4];
     float sides_m[2]; /* right, down; for scale 1 */
 } __attribute__((aligned(16)));
+/* Of what is seen of the sun's light on a plant, the share that is left by the plant's own shadow;
+ * shadows is not NULL. */
+float march_far_lit(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
+                    float y_px, march_kernel *kernel);
 void march_far_fill(const struct march_view *picture, uint32_t species, uint32_t turn, float x_px,
                     float y_px, march_kernel *kernel, struct march_far *far,
                     struct march_sprite *sprite);

@@ -236,11 +236,11 @@ static struct shadow_means means_of_cell(const struct march_shadows *shadows, ui
                        : (struct shadow_means){1, 1};
 }
 
-void march_shadows_light(struct march_shadows *shadows, const float sun_direction[3], int threads)
+bool march_shadows_light(struct march_shadows *shadows, const float sun_direction[3], int threads)
 {
     const size_t count = shadows->scene->instances_count;
     if (!shadow_light_turn(&shadows->light, sun_direction))
-        return;
+        return false;
     volumes_build(shadows, threads);
     map_build(shadows, threads);
 #pragma omp parallel for num_threads(threads) schedule(static, 64)
@@ -254,31 +254,66 @@ void march_shadows_light(struct march_shadows *shadows, const float sun_directio
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
     for (size_t cell = 0; cell < cells; cell++)
         shadows->cell_means[cell] = means_of_cell(shadows, (uint32_t)cell);
+    return true;
+}
+
+size_t march_shadows_kinds(const struct march_shadows *shadows)
+{
+    return shadows->kinds_count;
+}
+
+uint32_t march_shadows_kind(const struct march_shadows *shadows, const struct march_tree *tree)
+{
+    return (uint32_t)(kind_of(shadows, tree) - shadows->kinds);
+}
+
+const struct shadow_volume *march_shadows_volume(const struct march_shadows *shadows, size_t kind)
+{
+    return shadows->kinds[kind].is_wanted ? &shadows->kinds[kind].volume : NULL;
+}
+
+const uint8_t *march_shadows_gains(const struct march_shadows *shadows, int *side)
+{
+    *side = shadows->side;
+    return shadows->gains;
+}
+
+const struct shadow_light *march_shadows_sun(const struct march_shadows *shadows)
+{
+    return &shadows->light;
+}
+
+void march_shadows_to_cells(const struct march_shadows *shadows, size_t number, uint32_t level,
+                            float to_cells[3][4])
+{
+    /* A leaf or a wall of bark lies across cells, where it would shade itself: light is taken so
+     * far before it. Measured: what is seen of coarse voxels lies deeper than a ray's sample by
+     * about so much of their side. */
+    static const float before_leaves = 0.5f, deeper_voxels = 0.25f;
+    const struct kind *kind = &shadows->kinds[number];
+    const struct voxels *voxels = shadows->species[kind->species].voxels;
+    const struct shadow_volume *volume = &kind->volume;
+    const float per_m = 1 / volume->cell_m, voxel_m = voxels->levels[level].voxel_m;
+    const float later_m = deeper_voxels * voxel_m - before_leaves * kind->leaf_m;
+    for (int k = 0; k < 3; k++) {
+        const float *axis = volume->frame.axes[k];
+        to_cells[k][3] = ((k == 2 ? later_m : 0) - volume->low_m[k]) * per_m;
+        for (int i = 0; i < 3; i++) {
+            to_cells[k][i] = axis[i] * voxel_m * per_m;
+            to_cells[k][3] += axis[i] * voxels->origin_m[i] * per_m;
+        }
+    }
 }
 
 void march_shadows_fill(const struct march_shadows *shadows, const struct march_tree *tree,
                         uint32_t level, struct march_job *job)
 {
-    /* A leaf or a wall of bark lies across cells, where it would shade itself: light is taken so
-     * far before it. Measured: what is seen of coarse voxels lies deeper than a ray's sample by
-     * about so much of their side. */
-    static const float before_leaves = 0.5f, before_bark_cells = 2, deeper_voxels = 0.25f;
-    const struct voxels *voxels = shadows->species[tree->species].voxels;
-    const struct kind *kind = kind_of(shadows, tree);
-    const struct shadow_volume *volume = &kind->volume;
+    const uint32_t kind = march_shadows_kind(shadows, tree);
+    const struct shadow_volume *volume = &shadows->kinds[kind].volume;
     struct march_sun *light = &job->light;
-    const float per_m = 1 / volume->cell_m, voxel_m = voxels->levels[level].voxel_m;
-    const float later_m = deeper_voxels * voxel_m - before_leaves * kind->leaf_m;
-    for (int k = 0; k < 3; k++) {
-        const float *axis = volume->frame.axes[k];
-        light->size[k] = volume->size[k];
-        light->to_cells[k][3] = ((k == 2 ? later_m : 0) - volume->low_m[k]) * per_m;
-        for (int i = 0; i < 3; i++) {
-            light->to_cells[k][i] = axis[i] * voxel_m * per_m;
-            light->to_cells[k][3] += axis[i] * voxels->origin_m[i] * per_m;
-        }
-    }
-    light->bark_cells = before_bark_cells;
+    march_shadows_to_cells(shadows, kind, level, light->to_cells);
+    memcpy(light->size, volume->size, sizeof light->size);
+    light->bark_cells = march_shadows_bark_cells;
     light->passes = volume->passes;
     light->side = shadows->side;
     for (int k = 0; k < 2; k++)

@@ -21,8 +21,8 @@ enum status march_shadows_create(struct workspace *workspace, const struct scene
                                  const struct march_species *species,
                                  const struct march_tree *trees, const struct cells *cells,
                                  struct march_shadows **shadows);
-/* Nothing happens where the sun stands as at the last call. */
-void march_shadows_light(struct march_shadows *shadows, const float sun_direction[3], int threads);
+/* False, and nothing happens, where the sun stands as at the last call. */
+bool march_shadows_light(struct march_shadows *shadows, const float sun_direction[3], int threads);
 /* What of a picture's job is the sun's: of the scene's trees (their own shadows and the others')
  * and of trees that stand alone. */
 void march_shadows_fill(const struct march_shadows *shadows, const struct march_tree *tree,

@@ -94,4 +94,19 @@ void shadow_terrain_sweep(const struct terrain *terrain, const float toward_sun[
 float shadow_terrain_at(const struct terrain *terrain, const float *heights_m,
                         const float place_m[3]);
 
+/* What a march elsewhere takes along. A kind: a species as it is turned by a step. */
+size_t march_shadows_kinds(const struct march_shadows *shadows);
+uint32_t march_shadows_kind(const struct march_shadows *shadows, const struct march_tree *tree);
+/* NULL: no tree is of the kind. */
+const struct shadow_volume *march_shadows_volume(const struct march_shadows *shadows, size_t kind);
+/* From voxels of a level of the kind's species to the cells of its volume. */
+void march_shadows_to_cells(const struct march_shadows *shadows, size_t kind, uint32_t level,
+                            float to_cells[3][4]);
+/* A tree's side x side shares 0..255 over its volume, one tree behind the other. */
+const uint8_t *march_shadows_gains(const struct march_shadows *shadows, int *side);
+struct shadow_light;
+const struct shadow_light *march_shadows_sun(const struct march_shadows *shadows);
+/* What is all bark takes its light so many cells nearer the sun. */
+static const float march_shadows_bark_cells = 2;
+
 #endif

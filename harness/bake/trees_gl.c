@@ -1,6 +1,6 @@
 /* Trees in view to texels: which levels, where on the screen, from where they are looked at. */
 #include "bake/trees_gl.h"
-#include "bake/march_tree.h"
+#include "bake/sunlight_gl.h"
 
 #include <math.h>
 
@@ -16,7 +16,8 @@ struct trees_gl {
     const struct scene *scene;
     const struct voxels_gl *voxels;
     float bias, smooth;
-    struct march_tree *trees; /* one an instance */
+    struct march_tree *trees;     /* one an instance */
+    struct sunlight_gl *sunlight; /* NULL: the sun has no shadows */
     struct tiles_rect *rects;
     struct tree_texels *texels;
 };
@@ -34,6 +35,16 @@ struct trees_gl *trees_gl_create(struct arena *arena, const struct scene *scene,
     trees->texels = ARENA_ARRAY(arena, struct tree_texels, trees_gl_most(trees));
     march_trees_fill(scene, trees->trees);
     return trees;
+}
+
+const struct march_tree *trees_gl_trees(const struct trees_gl *trees)
+{
+    return trees->trees;
+}
+
+void trees_gl_shade(struct trees_gl *trees, struct sunlight_gl *sunlight)
+{
+    trees->sunlight = sunlight;
 }
 
 size_t trees_gl_most(const struct trees_gl *trees)
@@ -216,6 +227,16 @@ static int pieces_of(const struct trees_gl *trees, const struct picture *picture
     return count;
 }
 
+/* Where its sunlight is found. */
+static void light(const struct trees_gl *trees, uint32_t number, const struct piece *piece,
+                  struct tree_texels *texels)
+{
+    struct sunlight_gl_place place = sunlight_gl_of(trees->sunlight, number, piece->level);
+    texels->volume = place.volume;
+    texels->gains = place.gains;
+    texels->lit = piece->small ? sunlight_gl_far(trees->sunlight, number, texels->where) : -1;
+}
+
 static void see(const struct trees_gl *trees, const struct picture *picture, uint32_t number,
                 const struct piece *piece, struct tiles_rect *rect, struct tree_texels *texels)
 {
@@ -248,6 +269,8 @@ static void see(const struct trees_gl *trees, const struct picture *picture, uin
     texels->shares = (uint32_t)(65535 * clear + 0.5f) | (uint32_t)(65535 * piece->share + 0.5f)
                                                             << 16;
     texels->albedo = pack_10(albedo);
+    if (trees->sunlight)
+        light(trees, number, piece, texels);
 }
 
 size_t trees_gl_see(struct trees_gl *trees, const struct view *view, const struct cull_list *list,

@@ -2,6 +2,7 @@
 #ifndef TREELINE_BAKE_TREES_GL_H
 #define TREELINE_BAKE_TREES_GL_H
 
+#include "bake/march_tree.h"
 #include "bake/tiles.h"
 #include "bake/voxels_gl.h"
 
@@ -12,7 +13,7 @@ struct tree_texels {
     uint16_t rows[2]; /* both ends included, row 0 on top */
     float lean;       /* quarters of a pixel a row */
     uint16_t bounds[2];
-    uint32_t unused;
+    uint32_t volume; /* sun shadows: four texels of bake/sunlight_gl.h from 4 x this on */
     uint32_t first_cell;
     uint32_t size;   /* three times 10 bits; bit 30: smaller than a pixel; 31: opaque */
     uint32_t shares; /* what fog leaves, and of the optical depth what is drawn: 16 bits each */
@@ -21,16 +22,22 @@ struct tree_texels {
                         the screen, from pixel centres, px; its area, px^2 */
     float per_m;     /* voxels a metre; of a small tree: its depth along the view, m */
     float turn[2];   /* cosine, sine, both over the stretch */
-    float unused_too[2];
+    uint32_t gains;  /* sun shadows: the first of its corners */
+    float lit;       /* the same, of a small tree: share of the sun that is left; else -1 */
 };
 enum { TREE_TEXELS_BIAS = 1 << 14 };
 
 struct trees_gl;
+struct sunlight_gl;
 
 /* bias: added to the level of detail that a pixel asks for. smooth: levels over which one turns
  * into the next, both being drawn; 0: at once. */
 struct trees_gl *trees_gl_create(struct arena *arena, const struct scene *scene,
                                  const struct voxels_gl *voxels, float bias, float smooth);
+/* One an instance. */
+const struct march_tree *trees_gl_trees(const struct trees_gl *trees);
+/* In the sun's shadows from now on. */
+void trees_gl_shade(struct trees_gl *trees, struct sunlight_gl *sunlight);
 /* So many texels there are at most: a tree that turns into something else has several. */
 size_t trees_gl_most(const struct trees_gl *trees);
 /* The trees of a list, in its order; returns how many texels and rectangles, which stay valid until

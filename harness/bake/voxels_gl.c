@@ -50,6 +50,7 @@ enum status voxels_gl_prepare(struct workspace *workspace, const struct scene *s
     int divisor = workspace->lod == LOD_LOW ? 4 : workspace->lod == LOD_INTERMEDIATE ? 2 : 1;
     resolution = (resolution + divisor - 1) / divisor;
     all->species_count = count;
+    all->resolution = resolution;
     all->bounds = ARENA_ARRAY(arena, struct cull_bound, count);
     all->volumes = ARENA_ARRAY(arena, const struct voxels *, count);
     all->meshes = ARENA_ARRAY(arena, const struct mesh *, count);

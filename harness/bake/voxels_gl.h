@@ -10,6 +10,7 @@
 
 struct voxels_gl {
     size_t species_count;
+    int resolution; /* voxels along a plant's longest extent, as the level of detail has them */
     const struct voxels **volumes;              /* one a species */
     const struct mesh **meshes;                 /* the same */
     struct cull_bound *bounds;                  /* the same */
