@@ -122,7 +122,8 @@ enum status shadow_map_prepare(struct workspace *workspace, const struct scene *
     return status ? status : gl_check(gl, "shadow map", workspace->error);
 }
 
-enum status shadow_map_program(struct workspace *workspace, const struct shadow_map *map,
+/* With shadow_map.glsl in front of the source and SHADOWED defined. */
+static enum status map_program(struct workspace *workspace, const struct shadow_map *map,
                                const char *name, const char *source, const char *defines,
                                GLuint *program)
 {
@@ -346,6 +347,6 @@ enum status shadow_receiver_program(struct workspace *workspace, const struct sh
                                     const char *name, const char *source, const char *defines,
                                     GLuint *program)
 {
-    return map ? shadow_map_program(workspace, map, name, source, defines, program)
+    return map ? map_program(workspace, map, name, source, defines, program)
                : gl_program(workspace->gl, name, source, defines, program, workspace->error);
 }

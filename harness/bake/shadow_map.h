@@ -53,11 +53,6 @@ int shadow_layers(const struct shadow_options *options);
 enum status shadow_map_prepare(struct workspace *workspace, const struct scene *scene,
                                const struct shadow_options *options, struct shadow_map **map);
 
-/* gl_program() with shadow_map.glsl in front of the source and SHADOWED defined. */
-enum status shadow_map_program(struct workspace *workspace, const struct shadow_map *map,
-                               const char *name, const char *source, const char *defines,
-                               GLuint *program);
-
 /* Makes what the view needs anew: all maps where their fits have changed since the last call, or
  * the levels of detail that a large ground is drawn by, else nothing; always in a counted draw,
  * whose tally it fills in. view: with the size of what is drawn into. Changes the framebuffer that
@@ -78,8 +73,9 @@ void shadow_map_share(struct shadow_map *map, struct shadow_share share);
  * of a view; at most its far plane, 0 where that is so everywhere. After shadow_map_update. */
 float shadow_map_fine_m(const struct shadow_map *map, const struct view *view, float texel_px);
 
-/* For what receives if there is a map: gl_program() where map is NULL, else shadow_map_program();
- * and, of the program in use, uniforms and textures, none where map is NULL. */
+/* For what receives if there is a map: gl_program() where map is NULL, else with
+ * shadow_map.glsl in front of the source and SHADOWED defined; and, of the program in use, uniforms
+ * and textures, none where map is NULL. */
 enum status shadow_receiver_program(struct workspace *workspace, const struct shadow_map *map,
                                     const char *name, const char *source, const char *defines,
                                     GLuint *program);
