@@ -2,6 +2,7 @@
  * 4 x 4 of its parts, each of which has one depth. */
 #include "conifer_world.h"
 
+#include "bake/cone_canvas.h"
 #include "base/random.h"
 
 enum { WIDTH = 36, HEIGHT = 34, FINE = 4 };
@@ -122,11 +123,53 @@ static void test_canvas__an_edge_of_relief_hides_its_part_of_a_tree(void **state
     check_trees(true);
 }
 
+/* The farthest relief at the centres of a pixel's tile. */
+static float tile_far_m(const struct cone_canvas *canvas, int x, int y)
+{
+    float far_m = 0;
+    for (int row = y / CONE_TILE * CONE_TILE; row < HEIGHT; row++)
+        for (int column = x / CONE_TILE * CONE_TILE; column < WIDTH; column++)
+            if (row / CONE_TILE == y / CONE_TILE && column / CONE_TILE == x / CONE_TILE)
+                far_m = fmaxf(far_m, canvas->front_m[row * WIDTH + column]);
+    return far_m;
+}
+
+/* A level ridge whose edge goes down through the first row of a tile, so that at last parts of
+ * pixels alone see the sky. */
+static void test_canvas__what_parts_of_a_pixel_see_is_not_passed_over(void **state)
+{
+    (void)state;
+    int beyond = 0;
+    for (int step = 0; step < 16; step++) {
+        struct world world = ridge(1, false, false);
+        struct error error = {0};
+        struct workspace workspace = {.arena = world.arena, .error = &error, .threads = 2};
+        enum status status;
+        world.scene.terrain.heights_m[6] = world.scene.terrain.heights_m[7] = 0.12f - 0.005f * step;
+        struct cone_canvas *canvas =
+            cone_canvas_create(&workspace, &world.scene, NULL, true, &status);
+        assert_int_equal(status, STATUS_OK);
+        cone_canvas_begin(&workspace, canvas, &world.view);
+        for (int i = 0; i < WIDTH * HEIGHT; i++)
+            for (int k = 0; k < CONE_LAYERS && canvas->edges[i] >= 0; k++) {
+                const struct cone_layer *layer =
+                    &canvas->layers[CONE_LAYERS * canvas->edges[i] + k];
+                const float place_px[2] = {(float)(i % WIDTH), (float)(i / WIDTH)};
+                const float near_m = fminf(0.999f * layer->depth_m, 1e6f);
+                assert_true(layer->share == 0 || cone_canvas_sees(canvas, place_px, 0, near_m));
+                beyond += layer->share > 0 && near_m > tile_far_m(canvas, i % WIDTH, i / WIDTH);
+            }
+        arena_destroy(world.arena);
+    }
+    assert_true(beyond > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_canvas__an_edge_of_relief_is_the_mean_of_its_parts),
         cmocka_unit_test(test_canvas__an_edge_of_relief_hides_its_part_of_a_tree),
+        cmocka_unit_test(test_canvas__what_parts_of_a_pixel_see_is_not_passed_over),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
