@@ -1,36 +1,24 @@
 /* Cells of many trees: what they hold, against the trees themselves. */
-#include "testing.h"
+#include "random_forest.h"
 
 #include "bake/cells.h"
-#include "base/random.h"
 
 #include <string.h>
 
 enum { TREES = 5000 };
 
-static struct scene *random_forest(struct arena *arena, struct cull_bound bounds[2])
+/* One in five is of the second species; all are stretched; some stand in one place. */
+static struct scene *forest(struct arena *arena, struct cull_bound bounds[2])
 {
-    struct scene *scene = ARENA_NEW(arena, struct scene);
-    struct random random = random_seed(7, 1);
-    scene->width_px = 80;
-    scene->height_px = 60;
-    scene->camera = (struct camera_path){.fov_y_rad = 0.9f, .near_m = 1, .far_m = 20000};
-    scene->species_count = 2;
-    scene->instances_count = TREES;
-    scene->instances = ARENA_ARRAY(arena, struct instance, TREES);
-    for (size_t i = 0; i < TREES; i++)
-        scene->instances[i] =
-            (struct instance){{400 * random_float(&random) - 200, 30 * random_float(&random),
-                               300 * random_float(&random) - 200},
-                              6 * random_float(&random),
-                              0.5f + random_float(&random),
-                              random_below(&random, 5) == 0,
-                              0.7f + random_float(&random)};
-    for (int i = 100; i < 140; i++) /* some in one place */
-        memcpy(scene->instances[i].position_m, scene->instances[99].position_m,
-               sizeof scene->instances[i].position_m);
-    bounds[0] = (struct cull_bound){6, 7};
-    bounds[1] = (struct cull_bound){-1, 3};
+    struct scene *scene = random_forest(arena, TREES, 20000, bounds);
+    struct random random = random_seed(8, 1);
+    for (size_t i = 0; i < TREES; i++) {
+        scene->instances[i].species = random_below(&random, 5) == 0;
+        scene->instances[i].stretch = 0.7f + random_float(&random);
+        if (i >= 100 && i < 140)
+            memcpy(scene->instances[i].position_m, scene->instances[99].position_m,
+                   sizeof scene->instances[i].position_m);
+    }
     return scene;
 }
 
@@ -71,7 +59,7 @@ static void test_cells__a_cell_sums_the_trees_that_it_holds(void **state)
     (void)state;
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     struct cells *cells = cells_create(arena, scene, bounds);
     size_t most = 0;
     for (uint32_t cell = 0; cell < cells_count(cells); cell++) {
@@ -115,7 +103,7 @@ static void test_cells__what_culling_lists_is_listed_once_alone_or_in_a_cell(voi
     (void)state;
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     struct cells *cells = cells_create(arena, scene, bounds);
     struct cull *cull = cull_create(arena, scene, bounds);
     unsigned char times[TREES], culled[TREES];
@@ -146,7 +134,7 @@ static void test_cells__shares_of_what_turns_into_cells_sum_to_a_whole(void **st
     static int shares[TREES];
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     struct cells *cells = cells_create(arena, scene, bounds);
     struct cull *cull = cull_create(arena, scene, bounds);
     size_t parts = 0;
@@ -178,7 +166,7 @@ static void test_cells__a_forest_behind_the_eye_lists_nothing(void **state)
     (void)state;
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     struct cells *cells = cells_create(arena, scene, bounds);
     struct view view;
     view_look_at(scene, (float[3]){0, 50, 400}, (float[3]){0, 50, 900}, &view);
@@ -193,7 +181,7 @@ static void test_cells__threads_change_no_entry(void **state)
     (void)state;
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     struct cells *cells = cells_create(arena, scene, bounds);
     static uint32_t kept[TREES];
     for (int k = 0; k < 4; k++) {

@@ -1,35 +1,14 @@
 /* Culling, sorting and grouping of instances, against the slow way. */
-#include "testing.h"
-
-#include "bake/cull.h"
-#include "base/random.h"
+#include "random_forest.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { TREES = 3000 };
 
-static struct scene *random_forest(struct arena *arena, struct cull_bound bounds[2])
+static struct scene *forest(struct arena *arena, struct cull_bound bounds[2])
 {
-    struct scene *scene = ARENA_NEW(arena, struct scene);
-    struct random random = random_seed(7, 1);
-    scene->width_px = 80;
-    scene->height_px = 60;
-    scene->camera = (struct camera_path){.fov_y_rad = 0.9f, .near_m = 1, .far_m = 150};
-    scene->species_count = 2;
-    scene->instances_count = TREES;
-    scene->instances = ARENA_ARRAY(arena, struct instance, TREES);
-    for (size_t i = 0; i < TREES; i++)
-        scene->instances[i] =
-            (struct instance){{400 * random_float(&random) - 200, 30 * random_float(&random),
-                               400 * random_float(&random) - 200},
-                              6 * random_float(&random),
-                              0.5f + random_float(&random),
-                              random_below(&random, 2),
-                              1};
-    bounds[0] = (struct cull_bound){6, 7};
-    bounds[1] = (struct cull_bound){-1, 3};
-    return scene;
+    return random_forest(arena, TREES, 150, bounds);
 }
 
 static const float eyes[4][3] = {{0, 10, 0}, {190, 4, -20}, {0, 300, 0.1f}, {-30, -5, 60}};
@@ -40,7 +19,7 @@ static void test_cull__a_tree_is_listed_exactly_when_its_sphere_is_seen(void **s
     (void)state;
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     struct cull *cull = cull_create(arena, scene, bounds);
     for (int k = 0; k < 4; k++) {
         struct view view;
@@ -79,7 +58,7 @@ static void test_cull__the_list_is_sorted_either_way_and_holds_the_same_trees(vo
     (void)state;
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     struct cull *cull = cull_create(arena, scene, bounds);
     struct view view;
     view_look_at(scene, eyes[0], targets[0], &view);
@@ -122,7 +101,7 @@ static void test_cull__groups_are_runs_that_keep_the_order_within(void **state)
     (void)state;
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     struct cull *cull = cull_create(arena, scene, bounds);
     struct view view;
     uint32_t groups[TREES], group_of[TREES], first[6];
@@ -148,7 +127,7 @@ static void test_cull__an_empty_scene_gives_an_empty_list(void **state)
     (void)state;
     struct arena *arena = arena_create(0);
     struct cull_bound bounds[2];
-    struct scene *scene = random_forest(arena, bounds);
+    struct scene *scene = forest(arena, bounds);
     uint32_t first[2];
     struct view view;
     scene->instances_count = 0;
