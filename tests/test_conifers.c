@@ -326,6 +326,32 @@ static void test_conifers__twigs_take_as_much_light_from_the_ground_as_traced(vo
     }
 }
 
+/* A bough or a trunk by itself: its far side is dark by its own cosine alone. */
+static void test_conifers__bark_by_itself_is_as_bright_with_shadows_as_without(void **state)
+{
+    (void)state;
+    static const struct conifer_branch barks[3] = {{{0, 0, 0}, {0, 8, 0}, 0.15f, 0.1f, 0, 0},
+                                                   {{0, 2, 0}, {3, 3.5f, 0.6f}, 0.03f, 0.02f, 0, 0},
+                                                   {{0, 2, 0}, {-1, 3, 4}, 0.05f, 0.02f, 0, 0}};
+    for (int k = 0; k < 3; k++) {
+        double light[2];
+        for (int shadows = 0; shadows < 2; shadows++) {
+            struct world world = world_create(48, 48, 0.5);
+            struct conifer_twig twig = twig_along(0, 1, 0);
+            twig.base_m[1] = 20; /* out of sight */
+            plant_add(&world, plant_on(world.arena, &barks[k], &twig, 1));
+            world_look(&world, 0, 4, 14, 0, 3, 0);
+            world_sun(&world, 0.6, 0.7, 0.5);
+            struct cones_options options = options_of(-1);
+            light[shadows] =
+                sum_of(drawn(&world, &options, shadows ? EFFECT_SUN_SHADOWS : 0, 1), 0);
+            arena_destroy(world.arena);
+        }
+        if (!(light[1] > 0.97 * light[0]) || !(light[1] <= 1.001 * light[0]) || !(light[0] > 1))
+            fail_msg("bark %d: %.3f of %.3f", k, light[1], light[0]);
+    }
+}
+
 static void test_conifers__fewer_and_larger_twigs_cover_as_much(void **state)
 {
     (void)state;
@@ -387,6 +413,7 @@ int main(void)
         cmocka_unit_test(test_conifers__the_fast_way_draws_what_the_straightforward_one_does),
         cmocka_unit_test(test_conifers__what_relief_hides_is_left_out_without_a_trace),
         cmocka_unit_test(test_conifers__twigs_take_as_much_light_from_the_ground_as_traced),
+        cmocka_unit_test(test_conifers__bark_by_itself_is_as_bright_with_shadows_as_without),
         cmocka_unit_test(test_conifers__fewer_and_larger_twigs_cover_as_much),
         cmocka_unit_test(test_conifers__a_hundred_thousand_trees_take_less_than_640_bytes_each),
     };

@@ -182,12 +182,16 @@ static void bark_pass(const struct cone_bark *bark, struct cone_kind *kind, uint
     float length_m = sqrtf(right * right + up * up);
     int count = (int)fminf(fmaxf(ceilf(length_m / (2 * radius_m + 1e-9f)), 1), 64);
     struct square touched = untouched;
+    /* Light is read so far within that the piece before this one does not darken it. */
+    const float within =
+        fmaxf(1 - 2 * fmaxf(radius_m, kind->volume.cell_m) / (length_m + 1e-9f), 0);
     float sum = 0;
     for (int pass = 0; pass < 2; pass++)
         for (int k = 0; k < count; k++) {
-            float place_m[3], at = ((float)k + 0.5f) / (float)count;
+            float place_m[3], at = ((float)k + 0.5f) / (float)count - 0.5f;
+            at *= pass == 0 ? within : 1;
             for (int i = 0; i < 3; i++)
-                place_m[i] = middle_m[i] + (at - 0.5f) * way[i];
+                place_m[i] = middle_m[i] + at * way[i];
             if (pass == 0)
                 sum += light_of(kind, place_m, radius_m);
             else
