@@ -4,6 +4,9 @@
 
 #include "testing.h"
 
+#include "bake/backdrop.h"
+#include "bake/shadow_volume.h"
+
 enum { PIXELS = WIDTH * HEIGHT };
 
 /* The sun's visibility in each pixel. */
@@ -163,6 +166,66 @@ static void test_shadow_hybrid__casters_that_come_near_get_volumes(void **unused
     (void)unused;
 }
 
+/* The ground in the sun where volumes that are counted to a depth let it, into a target that was
+ * black. */
+static void draw_lit_ground(struct rig *rig, float deep_m, float *rgba)
+{
+    struct error error;
+    struct workspace workspace = {.arena = rig->arena, .error = &error, .threads = 2};
+    const struct shadow_volume_request request = {.test = SHADOW_AUTO};
+    struct target target, twin;
+    struct backdrop *backdrop = NULL;
+    struct shadow_volume *volume = NULL;
+    struct view lit = rig->view, dark;
+    shadow_volume_view(&lit);
+    dark = lit;
+    memset(dark.sun_direction, 0, sizeof dark.sun_direction);
+    if (gl_context_create("osmesa", 2, &workspace.gl, &error) != STATUS_OK ||
+        gl_target(workspace.gl, WIDTH, HEIGHT, TARGET_RGBA32F, &target, &error) != STATUS_OK ||
+        gl_target_stencil(workspace.gl, &target, 1, &twin, &error) != STATUS_OK ||
+        backdrop_prepare(&workspace, rig->scene, &backdrop) != STATUS_OK ||
+        shadow_volume_prepare(&workspace, rig->scene, &request, &volume) != STATUS_OK)
+        fail_msg("%s", error.text);
+    workspace.gl->BindFramebuffer(GL_FRAMEBUFFER, twin.framebuffer);
+    backdrop_draw(&workspace, backdrop, &dark);
+    shadow_volume_extrude(&workspace, volume, &lit, deep_m);
+    shadow_volume_count(&workspace, volume, &lit, deep_m);
+    backdrop_draw(&workspace, backdrop, &lit);
+    shadow_volume_end(&workspace);
+    gl_target_read(workspace.gl, &twin, rgba);
+    gl_context_destroy(workspace.gl);
+}
+
+/* What is beyond is the map's and need not be drawn again: there the count is not 0. */
+static void test_shadow_hybrid__nothing_beyond_the_volumes_depth_is_lit_by_them(void **unused)
+{
+    struct arena *arena = arena_create(0);
+    struct rig *rig = rig_of(arena, false);
+    static float all[4 * PIXELS], near[4 * PIXELS];
+    const float deep_m = 14;
+    int lit = 0, beyond = 0;
+    draw_lit_ground(rig, INFINITY, all);
+    draw_lit_ground(rig, deep_m, near);
+    for (int i = 0; i < PIXELS; i++) {
+        float direction[3], along = 0;
+        view_ray(&rig->view, (float)(i % WIDTH) + 0.5f, (float)(i / WIDTH) + 0.5f, direction);
+        for (int axis = 0; axis < 3; axis++)
+            along += direction[axis] * rig->view.forward[axis];
+        float depth_m = -rig->view.eye_m[1] / direction[1] * along; /* of the ground, y = 0 */
+        if (direction[1] > -0.01f || fabsf(depth_m - deep_m) < 0.01f)
+            continue;
+        lit += depth_m < deep_m && all[4 * i] > 0;
+        beyond += depth_m > deep_m && all[4 * i] > 0;
+        if (near[4 * i] != (depth_m < deep_m ? all[4 * i] : 0))
+            fail_msg("pixel %d at %g m: %g, all volumes: %g", i, (double)depth_m,
+                     (double)near[4 * i], (double)all[4 * i]);
+    }
+    assert_true(lit > PIXELS / 10 && beyond > PIXELS / 10);
+    embree_destroy(rig->embree);
+    arena_destroy(arena);
+    (void)unused;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -170,6 +233,7 @@ int main(void)
         cmocka_unit_test(test_shadow_hybrid__goes_over_from_volumes_to_the_map_by_depth),
         cmocka_unit_test(test_shadow_hybrid__begins_where_a_texel_is_as_small_as_is_asked_for),
         cmocka_unit_test(test_shadow_hybrid__casters_that_come_near_get_volumes),
+        cmocka_unit_test(test_shadow_hybrid__nothing_beyond_the_volumes_depth_is_lit_by_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
