@@ -62,8 +62,17 @@ enum status shadow_billboards_prepare(struct workspace *workspace, const struct 
     return gl_check(gl, "shadow billboards", workspace->error);
 }
 
-/* Lists the trees whose spheres reach into the map. */
-static size_t list_casters(const struct shadow_billboards *billboards, const struct shadow_fit *fit)
+bool shadow_billboards_suit(const struct shadow_billboards *billboards,
+                            const struct shadow_pass *pass, const struct instance *tree)
+{
+    double texel_m = fmax(pass->fit->texel_m[0], pass->fit->texel_m[1]);
+    float picture_m = billboards->atlas->species[tree->species].texel_m * instance_reach(tree);
+    return (double)picture_m <= texel_m;
+}
+
+/* Lists the trees that suit and whose spheres reach into the map. */
+static size_t list_casters(const struct shadow_billboards *billboards,
+                           const struct shadow_pass *pass)
 {
     const struct scene *scene = billboards->scene;
     size_t count = 0;
@@ -74,7 +83,9 @@ static size_t list_casters(const struct shadow_billboards *billboards, const str
             (double)tree->position_m[0],
             (double)(tree->position_m[1] + species->center_y_m * tree->scale * tree->stretch),
             (double)tree->position_m[2]};
-        if (shadow_fit_meets(fit, center_m, (double)(species->radius_m * instance_reach(tree))))
+        if (shadow_billboards_suit(billboards, pass, tree) &&
+            shadow_fit_meets(pass->fit, center_m,
+                             (double)(species->radius_m * instance_reach(tree))))
             billboards->order[count++] = (uint32_t)i;
     }
     return count;
@@ -93,7 +104,7 @@ void shadow_billboards_cast(struct workspace *workspace, const struct shadow_bil
                                0,
                                billboards->stretches_buffer};
     GLuint program = billboards->programs[pass->covers];
-    size_t count = list_casters(billboards, pass->fit);
+    size_t count = list_casters(billboards, pass);
     if (count == 0)
         return;
     gl->NamedBufferSubData(billboards->order_buffer, 0,

@@ -12,7 +12,12 @@ struct shadow_billboards;
 enum status shadow_billboards_prepare(struct workspace *workspace, const struct scene *scene,
                                       const struct shadow_options *options,
                                       struct shadow_billboards **billboards);
-/* Draws all trees that may shade a map's pass into what is bound. */
+/* Whether a tree's picture is fine enough for a pass: none of its texels is larger than the map's.
+ * A picture was taken from up to 15 degrees beside the sun, so what a tree shades close behind
+ * itself is displaced by some of its texels; seen from nearer it would be. */
+bool shadow_billboards_suit(const struct shadow_billboards *billboards,
+                            const struct shadow_pass *pass, const struct instance *tree);
+/* Draws those trees that may shade a map's pass and whose pictures suit it into what is bound. */
 void shadow_billboards_cast(struct workspace *workspace, const struct shadow_billboards *billboards,
                             const struct shadow_pass *pass);
 

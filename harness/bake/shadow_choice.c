@@ -7,8 +7,8 @@
 struct sun_shadows {
     struct sun_shadows_request request;
     struct shadow_map *map;               /* that receivers know; of volumes alone, none at all */
-    struct triangles *triangles;          /* own; NULL: the method's, or pictures */
-    struct shadow_billboards *billboards; /* NULL: triangles cast */
+    struct triangles *triangles;          /* own; NULL: the method's */
+    struct shadow_billboards *billboards; /* cast where they suit; NULL: triangles do */
     struct shadow_volume *volume;         /* NULL: nothing casts one */
     const struct backdrop *backdrop;
 };
@@ -44,14 +44,14 @@ static enum status prepare_casters(struct workspace *workspace, const struct sce
     const struct sun_shadows_request *request = &shadows->request;
     /* a tolerance asks for pruned leaves to be there; the map's pass chooses among them */
     struct triangles_request triangles = {.trees_room = scene->instances_count,
-                                          .tolerance_px =
-                                              request->casters == SHADOW_CASTERS_LOW ? 1 : 0};
-    if (request->technique == SHADOW_BY_VOLUME)
+                                          .tolerance_px = request->casters != SHADOW_CASTERS_EXACT};
+    enum status status = STATUS_OK;
+    if (request->technique == SHADOW_BY_VOLUME || scene->instances_count == 0)
         return STATUS_OK;
     if (request->casters == SHADOW_CASTERS_BILLBOARD)
-        return shadow_billboards_prepare(workspace, scene, &request->map, &shadows->billboards);
-    if (!request->own || scene->instances_count == 0)
-        return STATUS_OK;
+        status = shadow_billboards_prepare(workspace, scene, &request->map, &shadows->billboards);
+    if (status != STATUS_OK || !request->own)
+        return status;
     return triangles_prepare(workspace, scene, &triangles, &shadows->triangles);
 }
 

@@ -18,14 +18,16 @@
 
 /* exact:     every triangle.
  * low:       fewer and larger pruned leaves, of shadow_options.caster_tx texels.
- * billboard: one picture a tree that faces the sun (bake/shadow_billboards.h). */
+ * billboard: one picture a tree that faces the sun (bake/shadow_billboards.h), where its texels are
+ *            no larger than the map's, else as low. */
 enum shadow_casters { SHADOW_CASTERS_EXACT, SHADOW_CASTERS_LOW, SHADOW_CASTERS_BILLBOARD };
 enum shadow_technique { SHADOW_BY_NONE, SHADOW_BY_MAP, SHADOW_BY_VOLUME, SHADOW_BY_HYBRID };
 
 /* clang-format off */
 #define SHADOW_CASTERS_WORDS "exact|low|billboard"
 #define SHADOW_CASTERS_DOC                                                                         \
-    "what casts: every triangle; pruned leaves of about a texel; pictures that face the sun"
+    "what casts: every triangle; pruned leaves of about a texel; pictures that face the sun, where " \
+    "their texels are no larger than the map's"
 
 /* Rows of a method's table whose options hold a struct shadow_choice: of one whose slices blend, */
 #define SHADOW_CHOICE_OPTIONS(type, sun)                                                                \
@@ -96,8 +98,8 @@ bool sun_shadows_count(const struct sun_shadows *shadows);
 uint64_t sun_shadows_samples(const struct sun_shadows *shadows);
 
 /* Before each picture: makes the map that its view needs (shadow_map_update), with the size of what
- * is drawn into. drawn: the method's own triangles, which cast unless pictures do; NULL where the
- * request said own. Nothing with shadows NULL. */
+ * is drawn into. drawn: the method's own triangles, which cast where no picture does; NULL where
+ * the request said own. Nothing with shadows NULL. */
 enum status sun_shadows_update(struct workspace *workspace, struct sun_shadows *shadows,
                                const struct view *view, struct triangles *drawn);
 

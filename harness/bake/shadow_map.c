@@ -193,10 +193,11 @@ static void pass_draw(struct workspace *workspace, const struct shadow_map *map,
     if (map->options.caster_tx > 0)
         pass.per_m = 1 / (map->options.caster_tx * (float)fmax(fit->texel_m[0], fit->texel_m[1]));
     memcpy(pass.sun, map->sun, sizeof pass.sun);
+    pass.billboards = trees->billboards;
     backdrop_cast(workspace, backdrop, &pass);
     if (trees->billboards)
         shadow_billboards_cast(workspace, trees->billboards, &pass);
-    else if (trees->triangles)
+    if (trees->triangles)
         triangles_cast(workspace, trees->triangles, &pass);
 }
 

@@ -22,7 +22,7 @@ enum shadow_foliage { SHADOW_SOLID, SHADOW_ALPHA, SHADOW_DEEP };
 
 struct shadow_options {
     int size_px, cascades; /* cascades 0: no map, all is what shadow_map_share says */
-    float split; /* lambda of shadow_splits */
+    float split;           /* lambda of shadow_splits */
     bool stable, perspective, linear;
     int radius; /* (2 radius + 1)^2 taps */
     enum shadow_bias bias;
@@ -40,7 +40,8 @@ struct triangles;
 struct shadow_billboards;
 struct backdrop;
 
-/* The trees that cast: as pictures where there are any, else as triangles; NULL both: none do. */
+/* The trees that cast: as pictures where there are any that suit, else as triangles; NULL both:
+ * none do. */
 struct shadow_cast_by {
     struct triangles *triangles;
     const struct shadow_billboards *billboards;
@@ -92,6 +93,7 @@ struct shadow_pass {
     float layer_depth;
     float sun[3]; /* unit, toward it */
     float per_m;  /* tolerances a metre of a caster; 0: every triangle */
+    const struct shadow_billboards *billboards; /* what suits them is cast by them; NULL: none */
 };
 /* What draws casters: gl_program() with shadow_cover.glsl at the head of the fragment stage; LAYERS
  * where it is to say what it covers. */

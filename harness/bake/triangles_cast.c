@@ -1,19 +1,22 @@
 /* Triangles of trees as casters of shadow maps. */
+#include "bake/shadow_billboards.h"
 #include "bake/shadow_map.h"
 #include "bake/triangles_parts.h"
 
 #include <string.h>
 
-/* Whether a tree's sphere reaches into the map. */
-static bool casts(const struct triangles *triangles, const struct shadow_fit *fit,
+/* Whether a tree's sphere reaches into the map, and no picture of it casts in its place. */
+static bool casts(const struct triangles *triangles, const struct shadow_pass *pass,
                   const struct instance *tree)
 {
+    if (pass->billboards && shadow_billboards_suit(pass->billboards, pass, tree))
+        return false;
     const struct cull_bound *bound = &triangles->bounds[tree->species];
     double center_m[3] = {
         (double)tree->position_m[0],
         (double)(tree->position_m[1] + bound->center_y_m * tree->scale * tree->stretch),
         (double)tree->position_m[2]};
-    return shadow_fit_meets(fit, center_m, (double)(bound->radius_m * instance_reach(tree)));
+    return shadow_fit_meets(pass->fit, center_m, (double)(bound->radius_m * instance_reach(tree)));
 }
 
 /* Counts the casters of each group, then lays them out one group behind the other. */
@@ -29,7 +32,7 @@ static void place_casters(struct workspace *workspace, struct triangles *triangl
         const struct kind *kind = &triangles->kinds[tree->species];
         struct levels_choice choice = {0, -1};
         triangles->groups[i] = UINT32_MAX;
-        if (!casts(triangles, pass->fit, tree))
+        if (!casts(triangles, pass, tree))
             continue;
         if (pass->per_m > 0 && triangles->runs)
             choice = levels_choose(&kind->levels, pass->per_m * instance_reach(tree));
