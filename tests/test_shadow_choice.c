@@ -230,6 +230,47 @@ static void test_shadow_choice__what_volumes_cannot_shade_is_refused_in_a_line(v
     arena_destroy(arena);
 }
 
+/* A level square below the middle of a tree that is three times as high as its plant: a picture
+ * whose depths were not stretched with it would have it nearer to the sun than it is, in its own
+ * shadow. */
+static void test_shadow_choice__a_stretched_picture_casts_from_as_far_as_its_tree(void **state)
+{
+    (void)state;
+    static const float corners[2][3][3] = {{{-2, 1, -2}, {-2, 1, 2}, {2, 1, 2}},
+                                           {{-2, 1, -2}, {2, 1, 2}, {2, 1, -2}}};
+    static const char *const casters[] = {"exact", "billboard"};
+    struct arena *arena = arena_create(0);
+    struct error error = {0};
+    struct mask_error errs[2];
+    struct mesh *mesh = tree_mesh(arena, 2);
+    for (int leaf = 0; leaf < 2; leaf++)
+        for (int k = 0; k < 3; k++) {
+            size_t at = 3 * (size_t)(8 + leaf) + (size_t)k;
+            memcpy(mesh->positions[at], corners[leaf][k], sizeof corners[leaf][k]);
+            memcpy(mesh->normals[at], (float[3]){0, 1, 0}, sizeof mesh->normals[at]);
+        }
+    mesh_bounds(mesh);
+    struct scene *scene = world_of(arena, 1);
+    scene->species->plant = plant_from_mesh(arena, "table", mesh);
+    scene->instances_count = 1;
+    scene->instances[0] = (struct instance){.scale = 0.6f, .stretch = 3};
+    scene->sun.elevation_rad = 1;
+    scene->camera.near_m = 5;
+    scene->tree_reach_m = 40; /* a coarse map: its texels are larger than the picture's */
+    struct frame *picture, *mask, *true_mask = traced(arena, scene, shadowed, true);
+    for (int i = 0; i < 2; i++) {
+        drawn(arena, "shadow-map",
+              arena_printf(arena, "size=256,samples=4,bias=normal,casters=%s", casters[i]), scene,
+              shadowed, &picture, &mask);
+        if (mask_compare(mask, true_mask, &errs[i], &error) != STATUS_OK)
+            fail_msg("%s: %s", casters[i], error.text);
+        printf("# %s: wrong %.4f (leak %.4f, acne %.4f) of %.4f\n", casters[i], errs[i].wrong,
+               errs[i].leak, errs[i].acne, errs[i].dark);
+    }
+    assert_true(errs[1].acne < errs[0].acne + 0.005 && errs[1].wrong < errs[0].wrong + 0.01);
+    arena_destroy(arena);
+}
+
 static void test_shadow_choice__none_draws_the_same_whether_shadows_are_wanted_or_not(void **state)
 {
     (void)state;
@@ -256,6 +297,7 @@ int main(void)
         cmocka_unit_test(test_shadow_choice__every_kind_of_caster_shades_as_traced),
         cmocka_unit_test(test_shadow_choice__volumes_of_polygons_are_those_of_shadow_volume),
         cmocka_unit_test(test_shadow_choice__what_volumes_cannot_shade_is_refused_in_a_line),
+        cmocka_unit_test(test_shadow_choice__a_stretched_picture_casts_from_as_far_as_its_tree),
         cmocka_unit_test(test_shadow_choice__none_draws_the_same_whether_shadows_are_wanted_or_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
