@@ -78,6 +78,9 @@ refuses 'a report of nothing' 64 'which run' report
 refuses 'a report of a folder that is no run' 66 'cells.jsonl' report "$work"
 refuses 'an unknown action on the cache' 64 "'burn' is not one of" cache burn
 refuses 'trimming to no size' 64 'to which size' cache trim
+refuses 'trimming to what is no size' 64 "trim: 'nan' is not a size" cache trim nan
+refuses 'a view that looks nowhere' 64 'the eye is 0 m from the target' render --scene tiny --method null --eye 1,2,3 --target 1,2,3
+refuses 'a check that there is not' 64 "no check's name matches 'zzz'" conform --check zzz null
 
 # 2. What is asked for stands on stdout, alone.
 prints 'help lists the verbs' '^  run ' help

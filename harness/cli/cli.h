@@ -39,7 +39,7 @@ int cli_integer(const struct argp_state *state, const char *option, const char *
                 int maximum);
 double cli_number(const struct argp_state *state, const char *option, const char *text,
                   double minimum, double maximum);
-size_t cli_bytes(const struct argp_state *state, const char *option, const char *text);
+size_t cli_bytes(const struct argp_state *state, const char *what, const char *text);
 uint64_t cli_seed(const struct argp_state *state, const char *text);
 
 /* Where a verb that writes a folder writes it, and whether it prints the path of what to look at.

@@ -40,7 +40,7 @@ int cli_integer(const struct argp_state *state, const char *option, const char *
     return (int)value;
 }
 
-size_t cli_bytes(const struct argp_state *state, const char *option, const char *text)
+size_t cli_bytes(const struct argp_state *state, const char *what, const char *text)
 {
     char *end;
     errno = 0;
@@ -50,7 +50,7 @@ size_t cli_bytes(const struct argp_state *state, const char *option, const char 
         end++;
     }
     if (end == text || *end || errno || !(value >= 0) || value * factor > 0x1p50)
-        argp_failure(state, STATUS_USAGE, 0, "--%s: '%s' is not a size such as 512M or 2G", option,
+        argp_failure(state, STATUS_USAGE, 0, "%s: '%s' is not a size such as 512M or 2G", what,
                      text);
     return (size_t)(value * factor);
 }
@@ -120,6 +120,9 @@ static error_t shot_option(int key, char *text, struct argp_state *state)
     case ARGP_KEY_END:
         if (shot->has_eye != shot->has_target)
             argp_failure(state, STATUS_USAGE, 0, "--eye and --target go together");
+        if (shot->has_eye && memcmp(shot->eye_m, shot->target_m, sizeof shot->eye_m) == 0)
+            argp_failure(state, STATUS_USAGE, 0,
+                         "--target: the eye is 0 m from the target; which way does it look?");
         if (!shot->cell && !shot->scene)
             argp_failure(state, STATUS_USAGE, 0, "which scene? give a CELL or --scene");
         return 0;

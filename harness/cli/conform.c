@@ -1,5 +1,6 @@
 /* treeline conform: what the contract promises, checked on methods and plugins. */
 #include "conform/conform.h"
+#include "base/pattern.h"
 #include "cli/cli.h"
 #include "wall/gl.h"
 #include "wall/json.h"
@@ -93,6 +94,27 @@ static void totals_tell(struct listener *listener, const char *const keys[])
     printf("%s\n", listener->out ? json_out_text(listener->out) : "");
 }
 
+/* What asks for no check at all is not passed. */
+static enum status pattern_check(const char *text, struct error *error)
+{
+    regex_t pattern;
+    const char *name, *doc;
+    bool any = false;
+    if (!text)
+        return STATUS_OK;
+    enum status status = pattern_compile(text, "--check", STATUS_USAGE, &pattern, error);
+    if (status)
+        return status;
+    for (size_t i = 0; conform_check_at(i, &name, &doc); i++)
+        any |= !regexec(&pattern, name, 0, NULL, 0);
+    regfree(&pattern);
+    return any ? STATUS_OK
+               : error_set(error, STATUS_USAGE,
+                           "--check: no check's name matches '%s'; `treeline conform --help` has "
+                           "them all",
+                           text);
+}
+
 /* An unknown back end is no method's failure. */
 static enum status backend_check(const char *backend, struct error *error)
 {
@@ -108,7 +130,9 @@ static int conform(struct arena *arena, const struct request *request)
     static const char *const keys[] = {"passed", "skipped", "refused", "failed"};
     struct error error = {0};
     struct listener listener = {.out = request->json ? json_out(arena) : NULL};
-    enum status result = STATUS_OK, one, status = backend_check(request->conform.backend, &error);
+    enum status result = STATUS_OK, one, status = pattern_check(request->conform.pattern, &error);
+    if (!status)
+        status = backend_check(request->conform.backend, &error);
     if (status)
         return cli_fail(&error);
     if (listener.out) {

@@ -113,7 +113,7 @@ static error_t parse_measuring(int key, const char *text, const struct argp_stat
         plan->timeout_seconds = setting(state, "timeout", text, "timeout_seconds");
         return 0;
     case KEY_MEMORY:
-        plan->memory_bytes = cli_bytes(state, "memory", text);
+        plan->memory_bytes = cli_bytes(state, "--memory", text);
         plan->memory_given = true;
         return 0;
     case KEY_THREADS:
