@@ -38,6 +38,8 @@ static void test_cache__keeps_a_mesh_whole_and_refuses_torn_bytes(void **state)
     assert_string_equal(decoded->materials[decoded->parts[1].material].name, "Blatt_Leaf");
     for (size_t torn = 0; torn < size; torn++)
         assert_null(import_decode(arena, bytes, torn));
+    ((char *)bytes)[size - 1] = 'x'; /* a name without an end */
+    assert_null(import_decode(arena, bytes, size));
     arena_destroy(arena);
 }
 
