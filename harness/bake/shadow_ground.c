@@ -127,31 +127,49 @@ static float level_at(const struct shadow_ground *ground, int level, float x_m, 
     const float per_m = 1 / (ground->cell_m * (float)(1 << level));
     const float x = (x_m - ground->low_m[0]) * per_m - 0.5f;
     const float z = (z_m - ground->low_m[1]) * per_m - 0.5f;
-    if (!(x > -1 && z > -1 && x < (float)ground->size[level][0] &&
-          z < (float)ground->size[level][1]))
+    const int32_t *size = ground->size[level];
+    if (!(x > -1 && z > -1 && x < (float)size[0] && z < (float)size[1]))
         return 1;
     const int32_t column = (int32_t)(x + 1) - 1, row = (int32_t)(z + 1) - 1;
     const float right = x - (float)column, down = z - (float)row;
-    float rows[2];
-    for (int k = 0; k < 2; k++) {
-        const float from = (float)cell_at(ground, level, column, row + k);
-        rows[k] = from + right * ((float)cell_at(ground, level, column + 1, row + k) - from);
+    const bool inside = column >= 0 && row >= 0 && column + 1 < size[0] && row + 1 < size[1];
+    float corners[4];
+    if (inside) {
+        const uint8_t *first =
+            ground->levels[level] + (size_t)row * (size_t)size[0] + (size_t)column;
+        for (int k = 0; k < 4; k++)
+            corners[k] = (float)first[(k & 1) + (k >> 1) * size[0]];
+    } else {
+        for (int k = 0; k < 4; k++)
+            corners[k] = (float)cell_at(ground, level, column + (k & 1), row + (k >> 1));
     }
-    return (rows[0] + down * (rows[1] - rows[0])) / 255;
+    const float upper = corners[0] + right * (corners[1] - corners[0]);
+    const float lower = corners[2] + right * (corners[3] - corners[2]);
+    return (upper + down * (lower - upper)) * (1.0f / 255);
 }
 
-/* Mean over about so wide a part of the ground. The light itself stands for what is finer than
+/* Of a part of the ground so wide. Levels are read with weights that reach beyond a cell: measured,
+ * tests/test_shadow_ground.c. */
+static float level_of(const struct shadow_ground *ground, float wide_m)
+{
+    static const float blended = 0.7f;
+    return log2f(fmaxf(blended * wide_m / ground->cell_m, 1e-6f));
+}
+
+/* Mean over a part of the ground around a place. The light itself stands for what is finer than
  * level 0. */
 static float part_at(const struct shadow_ground *ground, const struct shadow_light *light,
-                     const float place_m[3], float wide_m)
+                     const float place_m[3], float level)
 {
-    const float level = log2f(fmaxf(wide_m / ground->cell_m, 1e-6f));
     const float most = (float)(ground->levels_count - 1);
-    if (level <= -1)
-        return shadow_light_at(light, place_m);
     if (level < 0) {
-        const float fine = shadow_light_at(light, place_m);
-        return fine + (1 + level) * (level_at(ground, 0, place_m[0], place_m[2]) - fine);
+        float world_m[3] = {place_m[0], place_m[1], place_m[2]};
+        if (light->terrain_m)
+            world_m[1] = terrain_height(light->terrain, place_m[0], place_m[2]);
+        const float fine = shadow_light_at(light, world_m);
+        return level <= -1
+                   ? fine
+                   : fine + (1 + level) * (level_at(ground, 0, place_m[0], place_m[2]) - fine);
     }
     if (level >= most)
         return level_at(ground, ground->levels_count - 1, place_m[0], place_m[2]);
@@ -161,7 +179,7 @@ static float part_at(const struct shadow_ground *ground, const struct shadow_lig
     return fine + (level - (float)whole) * (coarse - fine);
 }
 
-/* The ground's normal, not of unit length, by differences over a quad. */
+/* The ground's normal at its nearest sample. */
 static void normal_at(const struct shadow_light *light, const float place_m[3], float normal[3])
 {
     const struct terrain *terrain = light->terrain;
@@ -169,14 +187,12 @@ static void normal_at(const struct shadow_light *light, const float place_m[3], 
     normal[1] = 1;
     if (!light->terrain_m)
         return;
-    const float x_m = 0.5f * terrain->size_x_m / (float)(terrain->samples_x - 1);
-    const float z_m = 0.5f * terrain->size_z_m / (float)(terrain->samples_z - 1);
-    normal[0] = (terrain_height(terrain, place_m[0] - x_m, place_m[2]) -
-                 terrain_height(terrain, place_m[0] + x_m, place_m[2])) /
-                (2 * x_m);
-    normal[2] = (terrain_height(terrain, place_m[0], place_m[2] - z_m) -
-                 terrain_height(terrain, place_m[0], place_m[2] + z_m)) /
-                (2 * z_m);
+    const float last[2] = {(float)(terrain->samples_x - 1), (float)(terrain->samples_z - 1)};
+    const float x = (place_m[0] / terrain->size_x_m + 0.5f) * last[0] + 0.5f;
+    const float z = (place_m[2] / terrain->size_z_m + 0.5f) * last[1] + 0.5f;
+    const size_t column = (size_t)fminf(fmaxf(x, 0), last[0]);
+    const size_t row = (size_t)fminf(fmaxf(z, 0), last[1]);
+    memcpy(normal, terrain->normals[row * terrain->samples_x + column], 3 * sizeof *normal);
 }
 
 /* A footprint's long axis: places at eye + depth / (1 + slant s) (ray + s step), s in low..high of
@@ -218,26 +234,52 @@ static float distance(const float a[3], const float b[3])
     return sqrtf(dot3(way, way));
 }
 
-/* Whether a footprint between two places, so wide, may reach what is shaded by trees. */
-static bool is_near(const struct shadow_ground *ground, const float from_m[3], const float to_m[3],
-                    float wide_m)
+static float outside(float at, float low, float high)
 {
+    return at < low ? low - at : at > high ? at - high : 0;
+}
+
+/* Whether a footprint may reach what is shaded by trees. Its half length is at most depth |ray|
+ * times the slant, if that is below 1. */
+static bool is_near(const struct shadow_ground *ground, const struct shadow_pixel *pixel,
+                    const float normal[3], const float middle_m[3])
+{
+    const float toward = dot3(normal, pixel->ray);
+    const float right = dot3(normal, pixel->right), down = dot3(normal, pixel->down);
+    const float steep2 = right * right + down * down, toward2 = toward * toward;
+    float away2 = 0;
     for (int k = 0; k < 2; k++) {
         const float end_m = ground->low_m[k] + ground->cell_m * (float)ground->size[0][k];
-        if (fmaxf(from_m[2 * k], to_m[2 * k]) + wide_m < ground->low_m[k] ||
-            fminf(from_m[2 * k], to_m[2 * k]) - wide_m > end_m)
-            return false;
+        const float away_m = outside(middle_m[2 * k], ground->low_m[k], end_m);
+        away2 += away_m * away_m;
     }
-    return true;
+    return !(steep2 < toward2) ||
+           !(away2 * toward2 > 2 * pixel->depth_m * pixel->depth_m *
+                                   (dot3(pixel->ray, pixel->ray) * steep2 +
+                                    dot3(pixel->right, pixel->right) * toward2));
+}
+
+/* Parts of the axis that are about as long as each other. */
+static float even_mean(const struct shadow_ground *ground, const struct shadow_light *light,
+                       const float from_m[3], const float to_m[3], float wide_m, int count)
+{
+    const float long_m = distance(from_m, to_m) / (float)count;
+    float level = level_of(ground, fmaxf(wide_m, long_m)), sum = 0;
+    level = count > 1 && level < 0 ? 0 : level; /* several places need no finer ones */
+    for (int k = 0; k < count; k++) {
+        const float share = ((float)k + 0.5f) / (float)count;
+        float place_m[3];
+        for (int i = 0; i < 3; i++)
+            place_m[i] = from_m[i] + share * (to_m[i] - from_m[i]);
+        sum += part_at(ground, light, place_m, level);
+    }
+    return sum / (float)count;
 }
 
 static float axis_mean(const struct shadow_ground *ground, const struct shadow_light *light,
                        const struct shadow_pixel *pixel, const struct axis *axis, float wide_m,
                        int count)
 {
-    /* levels are read with weights that reach beyond a cell: measured, tests/test_shadow_ground.c
-     */
-    static const float blended = 0.7f;
     float sum = 0, ends_m[2][3];
     axis_place(pixel, axis, axis->low, ends_m[0]);
     for (int k = 0; k < count; k++) {
@@ -248,9 +290,8 @@ static float axis_mean(const struct shadow_ground *ground, const struct shadow_l
         axis_place(pixel, axis, s - 0.5f * step, place_m);
         long_m = distance(ends_m[0], ends_m[1]);
         memcpy(ends_m[0], ends_m[1], sizeof ends_m[0]);
-        if (light->terrain_m)
-            place_m[1] = terrain_height(light->terrain, place_m[0], place_m[2]);
-        sum += part_at(ground, light, place_m, blended * fmaxf(wide_m, long_m));
+        sum += part_at(ground, light, place_m,
+                       fmaxf(level_of(ground, fmaxf(wide_m, long_m)), count > 1 ? 0 : -1));
     }
     return sum / (float)count;
 }
@@ -258,6 +299,7 @@ static float axis_mean(const struct shadow_ground *ground, const struct shadow_l
 float shadow_ground_at(const struct shadow_ground *ground, const struct shadow_light *light,
                        const struct shadow_pixel *pixel)
 {
+    static const float even = -0.1f;
     struct axis axis;
     float middle_m[3], ends_m[2][3], normal[3];
     for (int i = 0; i < 3; i++)
@@ -265,14 +307,16 @@ float shadow_ground_at(const struct shadow_ground *ground, const struct shadow_l
     if (ground->levels_count == 0)
         return shadow_light_at(light, middle_m);
     normal_at(light, middle_m, normal);
+    if (!is_near(ground, pixel, normal, middle_m))
+        return light->terrain_m ? shadow_light_at(light, middle_m) : 1;
     if (!axis_of(pixel, normal, &axis))
         return shadow_light_at(light, middle_m);
     const float wide_m = pixel->depth_m * sqrtf(dot3(pixel->right, pixel->right));
     axis_place(pixel, &axis, axis.low, ends_m[0]);
     axis_place(pixel, &axis, axis.high, ends_m[1]);
-    if (!is_near(ground, ends_m[0], ends_m[1], wide_m))
-        return shadow_light_at(light, middle_m);
     const float long_m = distance(ends_m[0], ends_m[1]);
     const float probes = fminf(ceilf(long_m / fmaxf(wide_m, ground->cell_m)), PROBES);
-    return axis_mean(ground, light, pixel, &axis, wide_m, probes > 1 ? (int)probes : 1);
+    const int count = probes > 1 ? (int)probes : 1;
+    return axis.slant > even ? even_mean(ground, light, ends_m[0], ends_m[1], wide_m, count)
+                             : axis_mean(ground, light, pixel, &axis, wide_m, count);
 }
