@@ -80,7 +80,6 @@ static void test_shadow_choice__each_method_is_shaded_as_traced(void **state)
         {"polygons", "samples=4", "hybrid", 0.03, 0.08},
         {"billboards", "resolution=64,views=8", "map", 0.045, 0.2},
         {"billboards", "resolution=64,views=8", "volume", 0.055, 0.24},
-        {"billboards", "resolution=64,views=8", "hybrid", 0.045, 0.2},
         {"billboards", "resolution=64,views=8,alpha=coverage", "volume", 0.035, 0.2},
         {"billboards", "resolution=64,views=8,alpha=blend", "map", 0.04, 0.18},
         {"cross-quads", "resolution=64", "map", 0.045, 0.3},
@@ -123,9 +122,9 @@ static void test_shadow_choice__every_kind_of_caster_shades_as_traced(void **sta
     (void)state;
     /* pictures cast where the map is not finer than they are */
     static const char *const casters[] = {"size=512,casters=exact", "size=512,casters=low",
-                                          "size=256,casters=exact", "size=256,casters=billboard",
+                                          "size=256,casters=billboard",
                                           "size=1024,casters=billboard"};
-    static const double wrong[] = {0.03, 0.03, 0.036, 0.042, 0.024};
+    static const double wrong[] = {0.03, 0.03, 0.042, 0.024};
     static const float stretches[TREES] = {1.6f, 0.6f, 1.3f};
     struct arena *arena = arena_create(0);
     struct error error = {0};
@@ -157,7 +156,7 @@ static void test_shadow_choice__every_kind_of_caster_shades_as_traced(void **sta
 static void test_shadow_choice__volumes_of_polygons_are_those_of_shadow_volume(void **state)
 {
     (void)state;
-    static const float elevations[] = {0, 0.02f, 0.6f, 1.5707963f};
+    static const float elevations[] = {0, 0.6f, 1.5707963f};
     struct arena *arena = arena_create(0);
     for (size_t sun = 0; sun < sizeof elevations / sizeof *elevations; sun++) {
         struct scene *scene = world_of(arena, 3.5f);
