@@ -262,12 +262,14 @@ $(OBJ)/%.tidy: %.c $(OBJ)/%.o .clang-tidy
 	@clang-tidy --quiet --warnings-as-errors='*' $< -- $(filter-out -MMD -MP,$(CFLAGS_ALL)) 2>$@.log || { cat $@.log; exit 1; }
 	@touch $@
 
+# cppcheck 2.10 takes arrays that a loop fills for unset, and stumbles over vectors; gcc and clang's analyser look for
+# what is unset.
 lint:
 	@.ci/install lint
 	@clang-format --dry-run -Werror $(FORMAT)
 	@$(MAKE) --no-print-directory -j$(shell nproc) tidy
 	cppcheck --quiet -j$(shell nproc) --error-exitcode=1 --enable=warning,portability --inline-suppr \
-	    --suppress=missingIncludeSystem -Iharness -I$(GEN) harness methods
+	    --suppress=missingIncludeSystem --suppress=uninitvar --suppress=internalAstError -Iharness -I$(GEN) harness methods
 .PHONY: tidy
 tidy: $(TIDY)
 

@@ -25,7 +25,8 @@ static enum status prepare_programs(struct workspace *workspace,
     const char *source = impostor_source(scratch, shadow_billboards_glsl);
     const char *defines = arena_printf(scratch, "CAST 1\nVIEWS 1\nLAYOUT %d\n%s", VIEWS_HEMISPHERE,
                                        billboards->stretches_buffer ? "STRETCHED 1\n" : "");
-    for (int covers = 0; covers <= (shadow_layers(options) > 0) && status == STATUS_OK; covers++)
+    const int kinds = shadow_layers(options) > 0 ? 2 : 1;
+    for (int covers = 0; covers < kinds && status == STATUS_OK; covers++)
         status = shadow_cast_program(workspace, options, covers, source, defines,
                                      &billboards->programs[covers]);
     arena_destroy(scratch);

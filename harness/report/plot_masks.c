@@ -92,7 +92,7 @@ static bool next_row(const struct masks *masks, size_t method, size_t *step, siz
 {
     const size_t count = masks->group->rows_count;
     for (; *step < 2 * count; ++*step) {
-        *row = *step % count;
+        *row = *step < count ? *step : *step - count;
         const struct row *at = &masks->plot.book->rows[masks->group->rows[*row]];
         if (at->method_index == method && masks->on_front[*row] == (*step < count) &&
             is_drawn(at)) {
@@ -120,9 +120,10 @@ static void put_floor(struct masks *masks)
     if (isnan(masks->floor))
         return;
     plot_upright(plot, 1, masks->floor, "noise of the reference");
-    for (double beside = 1; beside < 1.1; beside += 0.02) /* the line and its text */
-        plot_keep_clear_line(plot, beside * masks->floor, masks->y.low, beside * masks->floor,
-                             masks->y.high);
+    for (int i = 0; i < 5; i++) { /* the line and its text */
+        const double beside = (1 + 0.02 * i) * masks->floor;
+        plot_keep_clear_line(plot, beside, masks->y.low, beside, masks->y.high);
+    }
 }
 
 /* A number at every point, as the key counts them. */
