@@ -204,7 +204,7 @@ static void test_ray_texels_gl__draws_what_the_march_on_the_cpu_draws(void **sta
 
 enum { SUNS = 4 };
 static const float suns[SUNS][3] = {
-    {0.77f, 0.57f, 0.28f}, {0, 1, 0}, {-0.28f, 0, 0.96f}, {0.77f, -0.57f, 0.28f}};
+    {0.77f, 0.57f, 0.28f}, {0, 1, 0}, {-0.28f, 0, 0.96f}, {0.958f, -0.05f, 0.282f}};
 
 /* Pictures of a forest under some of the suns, on the CPU and by OpenGL. */
 static void forest_draw(struct arena *arena, const struct scene *scene, const char *options,
