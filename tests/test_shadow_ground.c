@@ -1,5 +1,5 @@
 /* The sun on the ground under a pixel against the mean of rays through all of the pixel. */
-#include "testing.h"
+#include "march_world.h"
 
 #include "bake/shadow_ground.h"
 
@@ -80,7 +80,7 @@ static struct shadow_pixel pixel_at(const struct rows *rows, float x_m, float z_
 }
 
 /* The light at the places that rays through all of the pixel meet. */
-static float traced(const struct rows *rows, const struct shadow_pixel *seen)
+static float by_rays(const struct rows *rows, const struct shadow_pixel *seen)
 {
     double sum = 0;
     for (int k = 0; k < ACROSS * DOWN; k++) {
@@ -114,7 +114,7 @@ static struct errors errors_at(const struct rows *rows, float away_m, float up_m
                     middle_m[2] = {-1.35f + step_m, -5 + 0.11f * step_m};
         const struct shadow_pixel seen = pixel_at(rows, middle_m[0], middle_m[1], away_m, up_m);
         const float place_m[3] = {middle_m[0], rows->rise * middle_m[1], middle_m[1]};
-        const double truth = (double)traced(rows, &seen);
+        const double truth = (double)by_rays(rows, &seen);
         const double off = (double)shadow_ground_at(&rows->ground, &rows->light, &seen) - truth;
         errors.mean += fabs(off) / COUNT;
         errors.most = fmax(errors.most, fabs(off));
@@ -167,11 +167,55 @@ static void test_shadow_ground__at_the_horizon_light_is_between_none_and_all(voi
     free(rows);
 }
 
+/* Crowns far apart and their shadows, seen at a slant in which a pixel's ground is longer than a
+ * shadow. */
+static struct world world_of_shadows(void)
+{
+    struct world world = world_of_balls(1, 3000, 0.25);
+    struct scene *scene = &world.scene;
+    scene->terrain = level_ground(world.arena, 300, 0.4f);
+    for (scene->instances_count = 0; scene->instances_count < 40; scene->instances_count++) {
+        struct instance *tree = &scene->instances[scene->instances_count];
+        *tree = scene->instances[0];
+        tree->position_m[0] = 25 * ((float)(scene->instances_count % 8) - 3.5f);
+        tree->position_m[2] = 25 * ((float)(scene->instances_count / 8) - 2);
+    }
+    world_look(&world, 200, 90, 400, 0, 0, 0);
+    world_sun(&world, 0.7, 0.5, -0.5);
+    return world;
+}
+
+static void test_shadow_ground__the_march_has_shadows_finer_than_pixels_as_traced(void **state)
+{
+    (void)state;
+    static const unsigned effects[2] = {EFFECT_TWO_SIDED, EFFECT_TWO_SIDED | EFFECT_SUN_SHADOWS};
+    struct world world = world_of_shadows();
+    const struct frame *drawn[2], *truth[2];
+    double error = 0, shade = 0;
+    for (int k = 0; k < 2; k++) {
+        drawn[k] = march_picture(&world, &usual, effects[k], 2);
+        truth[k] = traced(&world, effects[k]);
+    }
+    for (int i = 0; i < 96 * 80; i++) {
+        const double dark = truth[0]->rgba[4 * i] - truth[1]->rgba[4 * i];
+        const double off = drawn[0]->rgba[4 * i] - drawn[1]->rgba[4 * i] - dark;
+        if (truth[1]->rgba[4 * i + 3] > 0.02f || drawn[1]->rgba[4 * i + 3] > 0.02f)
+            continue;
+        error += off * off;
+        shade += dark * dark;
+    }
+    printf("# off by %.4f of %.4f\n", sqrt(error / (96 * 80)), sqrt(shade / (96 * 80)));
+    if (!(sqrt(error) < 0.2 * sqrt(shade)))
+        fail_msg("off by %g of %g", sqrt(error), sqrt(shade));
+    arena_destroy(world.arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shadow_ground__a_pixel_has_the_mean_light_of_what_it_covers),
         cmocka_unit_test(test_shadow_ground__at_the_horizon_light_is_between_none_and_all),
+        cmocka_unit_test(test_shadow_ground__the_march_has_shadows_finer_than_pixels_as_traced),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

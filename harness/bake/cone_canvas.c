@@ -312,22 +312,10 @@ static void layer_shade(const struct cone_canvas *canvas, size_t pixel, float de
 {
     if (!canvas->lights || !(sun > 0) || !isfinite(depth_m))
         return;
-    const struct backdrop_rays *rays = &canvas->rays;
-    float x = (float)(pixel % (size_t)canvas->width_px);
-    float y = (float)(pixel / (size_t)canvas->width_px), place_m[3];
-    struct shadow_pixel seen = {.depth_m = depth_m};
-    for (int i = 0; i < 3; i++) {
-        seen.eye_m[i] = canvas->eye_m[i];
-        seen.right[i] = rays->right[i];
-        seen.down[i] = rays->down[i];
-        seen.ray[i] = rays->first[i] + x * rays->right[i] + y * rays->down[i];
-        place_m[i] = seen.eye_m[i] + depth_m * seen.ray[i];
-    }
-    float dark = (1 - cone_lights_on_ground(canvas->lights, &seen)) * sun;
-    float albedo[3];
-    terrain_albedo(&canvas->scene->terrain, place_m[0], place_m[2], albedo);
-    for (int c = 0; c < 3; c++)
-        rgb[c] -= dark * albedo[c] * canvas->scene->sun.radiance[c];
+    const size_t width = (size_t)canvas->width_px;
+    const struct shadow_pixel seen = shadow_pixel_of(
+        canvas->eye_m, &canvas->rays, (float)(pixel % width), (float)(pixel / width), depth_m);
+    cone_lights_shade_ground(canvas->lights, &seen, sun, rgb);
 }
 
 /* Sums what is left of a pixel's layers; returns how much is. */

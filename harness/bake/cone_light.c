@@ -115,9 +115,11 @@ static void map_build(struct cone_lights *lights, int threads)
                     threads);
 }
 
-float cone_lights_on_ground(const struct cone_lights *lights, const struct shadow_pixel *pixel)
+void cone_lights_shade_ground(const struct cone_lights *lights, const struct shadow_pixel *pixel,
+                              float sun, float rgb[3])
 {
-    return shadow_ground_at(&lights->ground, &lights->light, pixel);
+    shadow_ground_shade(&lights->ground, &lights->light, pixel, sun, lights->scene->sun.radiance,
+                        rgb);
 }
 
 static void kinds_build(struct cone_lights *lights, int threads)

@@ -30,7 +30,9 @@ struct cone_tree_light {
 void cone_lights_of_tree(const struct cone_lights *lights, size_t instance,
                          struct cone_tree_light *light);
 float cone_tree_light_gain(const struct cone_tree_light *light, const float place_m[3]);
-/* Share of the sun that reaches the ground that a pixel sees, through trees and terrain. */
-float cone_lights_on_ground(const struct cone_lights *lights, const struct shadow_pixel *pixel);
+/* Takes from the ground that a pixel sees the sun that trees and terrain keep from it. sun: the
+ * share of the sun that it has by its slope and through fog. */
+void cone_lights_shade_ground(const struct cone_lights *lights, const struct shadow_pixel *pixel,
+                              float sun, float rgb[3]);
 
 #endif

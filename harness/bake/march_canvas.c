@@ -1,6 +1,7 @@
 /* A tile of the march's picture while it is drawn. */
 #include "bake/march_canvas.h"
 #include "bake/march_shadow.h"
+#include "bake/shadow_ground.h"
 #include "bake/share.h"
 
 #include <math.h>
@@ -42,24 +43,15 @@ void canvas_open(struct canvas *canvas, const struct march_view *picture)
 void canvas_shade(struct canvas *canvas, const struct march_view *picture)
 {
     const struct backdrop_tile *tile = &canvas->tile;
-    const struct scene *scene = picture->scene;
     for (int row = 0; row < tile->height_px; row++)
         for (int column = 0; column < tile->width_px; column++) {
             const int at = row * tile->stride + column;
             if (!(canvas->suns[at] > 0) || canvas->left[at] <= picture->options.stop)
                 continue;
-            float place_m[3];
-            for (int i = 0; i < 3; i++)
-                place_m[i] =
-                    picture->view->eye_m[i] +
-                    canvas->depths_m[at] * (picture->rays.first[i] +
-                                            (float)(tile->x_px + column) * picture->rays.right[i] +
-                                            (float)(tile->y_px + row) * picture->rays.down[i]);
-            float dark = (1 - march_shadows_at(picture->shadows, place_m)) * canvas->suns[at];
-            float albedo[3];
-            terrain_albedo(&scene->terrain, place_m[0], place_m[2], albedo);
-            for (int c = 0; c < 3; c++)
-                canvas->rgb[at][c] -= dark * albedo[c] * scene->sun.radiance[c];
+            const struct shadow_pixel pixel =
+                shadow_pixel_of(picture->view->eye_m, &picture->rays, (float)(tile->x_px + column),
+                                (float)(tile->y_px + row), canvas->depths_m[at]);
+            march_shadows_shade_ground(picture->shadows, &pixel, canvas->suns[at], canvas->rgb[at]);
         }
 }
 

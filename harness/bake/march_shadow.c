@@ -1,7 +1,7 @@
 /* Sun shadows of the march: what is built when the sun has moved, and what a tree is given of it.
  */
 #include "bake/march_shadow_parts.h"
-#include "bake/shadow_light.h"
+#include "bake/shadow_ground.h"
 
 #include <math.h>
 #include <string.h>
@@ -37,6 +37,7 @@ struct march_shadows {
     float *keys, *scratch_keys;
     uint32_t *order, *scratch_order;
     struct shadow_light light;
+    struct shadow_ground ground;
 };
 
 enum {
@@ -243,6 +244,7 @@ bool march_shadows_light(struct march_shadows *shadows, const float sun_directio
         return false;
     volumes_build(shadows, threads);
     map_build(shadows, threads);
+    shadow_ground_fill(shadows->arena, &shadows->ground, &shadows->light, threads);
 #pragma omp parallel for num_threads(threads) schedule(static, 64)
     for (size_t i = 0; i < count; i++) {
         const struct shadow_caster caster = caster_of(shadows, &shadows->trees[i]);
@@ -281,6 +283,11 @@ const uint8_t *march_shadows_gains(const struct march_shadows *shadows, int *sid
 const struct shadow_light *march_shadows_sun(const struct march_shadows *shadows)
 {
     return &shadows->light;
+}
+
+const struct shadow_ground *march_shadows_ground(const struct march_shadows *shadows)
+{
+    return &shadows->ground;
 }
 
 void march_shadows_to_cells(const struct march_shadows *shadows, size_t number, uint32_t level,
@@ -342,7 +349,9 @@ float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell, 
     return mean_seen(&shadows->cell_means[cell], shadows->light.sun_direction[1], rise);
 }
 
-float march_shadows_at(const struct march_shadows *shadows, const float place_m[3])
+void march_shadows_shade_ground(const struct march_shadows *shadows,
+                                const struct shadow_pixel *pixel, float sun, float rgb[3])
 {
-    return shadow_light_at(&shadows->light, place_m);
+    shadow_ground_shade(&shadows->ground, &shadows->light, pixel, sun,
+                        shadows->scene->sun.radiance, rgb);
 }

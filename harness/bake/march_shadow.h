@@ -14,6 +14,7 @@
 #include "bake/march_job.h"
 
 struct march_shadows;
+struct shadow_pixel;
 
 /* trees: one an instance of the scene; cells: of them, or NULL; all stay. */
 enum status march_shadows_create(struct workspace *workspace, const struct scene *scene,
@@ -31,7 +32,9 @@ void march_shadows_fill(const struct march_shadows *shadows, const struct march_
  * those of a cell, from an eye, whose way there rises by a sine. */
 float march_shadows_of_tree(const struct march_shadows *shadows, uint32_t tree, float rise);
 float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell, float rise);
-/* Share of the sun that reaches a place in the world, m, through trees and terrain. */
-float march_shadows_at(const struct march_shadows *shadows, const float place_m[3]);
+/* Takes from the ground under a pixel the sun that trees and terrain keep from it. sun: the share
+ * of the sun that it has by its slope and through fog. */
+void march_shadows_shade_ground(const struct march_shadows *shadows,
+                                const struct shadow_pixel *pixel, float sun, float rgb[3]);
 
 #endif

@@ -106,6 +106,8 @@ void march_shadows_to_cells(const struct march_shadows *shadows, size_t kind, ui
 const uint8_t *march_shadows_gains(const struct march_shadows *shadows, int *side);
 struct shadow_light;
 const struct shadow_light *march_shadows_sun(const struct march_shadows *shadows);
+struct shadow_ground;
+const struct shadow_ground *march_shadows_ground(const struct march_shadows *shadows);
 /* What is all bark takes its light so many cells nearer the sun. */
 static const float march_shadows_bark_cells = 2;
 

@@ -171,12 +171,22 @@ static float part_at(const struct shadow_ground *ground, const struct shadow_lig
                    ? fine
                    : fine + (1 + level) * (level_at(ground, 0, place_m[0], place_m[2]) - fine);
     }
-    if (level >= most)
-        return level_at(ground, ground->levels_count - 1, place_m[0], place_m[2]);
-    const int whole = (int)level;
+    const int whole = (int)fminf(level, most);
     const float fine = level_at(ground, whole, place_m[0], place_m[2]);
+    if (level >= most || level == (float)whole)
+        return fine;
     const float coarse = level_at(ground, whole + 1, place_m[0], place_m[2]);
     return fine + (level - (float)whole) * (coarse - fine);
+}
+
+/* Whether nothing shades a part of the ground so wide: the four cells of a level around its middle
+ * that hold all of it. */
+static bool is_lit(const struct shadow_ground *ground, const float middle_m[3], float wide_m)
+{
+    int level = 0, most = ground->levels_count - 1;
+    for (float cell_m = ground->cell_m; cell_m < wide_m && level < most; cell_m *= 2)
+        level++;
+    return level < most && level_at(ground, level, middle_m[0], middle_m[2]) >= 1;
 }
 
 /* The ground's normal at its nearest sample. */
@@ -265,7 +275,8 @@ static float even_mean(const struct shadow_ground *ground, const struct shadow_l
 {
     const float long_m = distance(from_m, to_m) / (float)count;
     float level = level_of(ground, fmaxf(wide_m, long_m)), sum = 0;
-    level = count > 1 && level < 0 ? 0 : level; /* several places need no finer ones */
+    if (count > 1) /* several places need no finer ones, and none between levels */
+        level = level > 0 ? (float)(int)(level + 0.5f) : 0;
     for (int k = 0; k < count; k++) {
         const float share = ((float)k + 0.5f) / (float)count;
         float place_m[3];
@@ -296,6 +307,19 @@ static float axis_mean(const struct shadow_ground *ground, const struct shadow_l
     return sum / (float)count;
 }
 
+struct shadow_pixel shadow_pixel_of(const float eye_m[3], const struct backdrop_rays *rays,
+                                    float x_px, float y_px, float depth_m)
+{
+    struct shadow_pixel pixel = {.depth_m = depth_m};
+    for (int i = 0; i < 3; i++) {
+        pixel.eye_m[i] = eye_m[i];
+        pixel.right[i] = rays->right[i];
+        pixel.down[i] = rays->down[i];
+        pixel.ray[i] = rays->first[i] + x_px * rays->right[i] + y_px * rays->down[i];
+    }
+    return pixel;
+}
+
 float shadow_ground_at(const struct shadow_ground *ground, const struct shadow_light *light,
                        const struct shadow_pixel *pixel)
 {
@@ -317,6 +341,22 @@ float shadow_ground_at(const struct shadow_ground *ground, const struct shadow_l
     const float long_m = distance(ends_m[0], ends_m[1]);
     const float probes = fminf(ceilf(long_m / fmaxf(wide_m, ground->cell_m)), PROBES);
     const int count = probes > 1 ? (int)probes : 1;
+    if (count > 1 && is_lit(ground, middle_m, long_m + 2 * wide_m))
+        return 1;
     return axis.slant > even ? even_mean(ground, light, ends_m[0], ends_m[1], wide_m, count)
                              : axis_mean(ground, light, pixel, &axis, wide_m, count);
+}
+
+void shadow_ground_shade(const struct shadow_ground *ground, const struct shadow_light *light,
+                         const struct shadow_pixel *pixel, float sun, const float radiance[3],
+                         float rgb[3])
+{
+    const float dark = (1 - shadow_ground_at(ground, light, pixel)) * sun;
+    float albedo[3];
+    if (!(dark > 0))
+        return;
+    terrain_albedo(light->terrain, pixel->eye_m[0] + pixel->depth_m * pixel->ray[0],
+                   pixel->eye_m[2] + pixel->depth_m * pixel->ray[2], albedo);
+    for (int c = 0; c < 3; c++)
+        rgb[c] -= dark * albedo[c] * radiance[c];
 }

@@ -6,6 +6,7 @@
 #ifndef TREELINE_BAKE_SHADOW_GROUND_H
 #define TREELINE_BAKE_SHADOW_GROUND_H
 
+#include "bake/backdrop_cpu.h"
 #include "bake/shadow_light.h"
 
 enum { SHADOW_GROUND_LEVELS = 12 };
@@ -29,9 +30,16 @@ void shadow_ground_fill(struct arena *arena, struct shadow_ground *ground,
 struct shadow_pixel {
     float eye_m[3], depth_m, ray[3], right[3], down[3];
 };
+struct shadow_pixel shadow_pixel_of(const float eye_m[3], const struct backdrop_rays *rays,
+                                    float x_px, float y_px, float depth_m);
 /* Mean share of the sun over the pixel. Where the ground is bent, over the plane that touches it
  * there. */
 float shadow_ground_at(const struct shadow_ground *ground, const struct shadow_light *light,
                        const struct shadow_pixel *pixel);
+/* Takes from what a pixel shows of the ground the sun that does not reach it. sun: the share of the
+ * sun's radiance times albedo that it has by its slope and through fog. */
+void shadow_ground_shade(const struct shadow_ground *ground, const struct shadow_light *light,
+                         const struct shadow_pixel *pixel, float sun, const float radiance[3],
+                         float rgb[3]);
 
 #endif

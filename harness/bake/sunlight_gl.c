@@ -1,7 +1,7 @@
 /* The march's sun shadows in OpenGL's buffers. */
 #include "bake/sunlight_gl.h"
 #include "bake/march_job.h"
-#include "bake/shadow_light.h"
+#include "bake/shadow_ground.h"
 #include "base/clock.h"
 
 #include "sunlight.glsl.h"
@@ -38,6 +38,8 @@ struct sunlight_gl {
     struct march_species *species;
     struct march_shadows *shadows;
     struct texels texels[TEXELS];
+    GLuint above; /* the ground's shares; 0: none */
+    size_t above_bytes;
     struct volume_texels *volumes; /* kinds x VOXELS_LEVELS_MAX */
     uint32_t *corners;             /* trees x side x side */
     uint16_t *kinds;               /* one a tree */
@@ -170,6 +172,36 @@ static enum status gains_put(struct workspace *workspace, struct sunlight_gl *su
                       count * corners * sizeof *sunlight->corners);
 }
 
+/* The ground's shares; sides are powers of two so that levels halve as the ground's do, and what is
+ * beyond its own is lit. */
+static void above_put(struct gl *gl, struct sunlight_gl *sunlight)
+{
+    static const float lit[4] = {1, 1, 1, 1};
+    static const uint8_t all = 255;
+    const struct shadow_ground *ground = march_shadows_ground(sunlight->shadows);
+    int sides[2] = {1, 1};
+    if (sunlight->above)
+        gl_delete_texture(gl, sunlight->above);
+    sunlight->above = 0;
+    sunlight->above_bytes = 0;
+    if (ground->levels_count == 0)
+        return;
+    for (int k = 0; k < 2; k++)
+        while (sides[k] < ground->size[0][k])
+            sides[k] *= 2;
+    sunlight->above = gl_texture(gl, GL_TEXTURE_2D, 0, GL_R8, sides[0], sides[1], 1);
+    gl->ClearTexImage(sunlight->above, 0, GL_RED, GL_UNSIGNED_BYTE, &all);
+    gl->TextureSubImage2D(sunlight->above, 0, 0, 0, ground->size[0][0], ground->size[0][1], GL_RED,
+                          GL_UNSIGNED_BYTE, ground->levels[0]);
+    gl->GenerateTextureMipmap(sunlight->above);
+    sunlight->above_bytes = (size_t)sides[0] * (size_t)sides[1] * 4 / 3;
+    gl->TextureParameteri(sunlight->above, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    gl->TextureParameteri(sunlight->above, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl->TextureParameteri(sunlight->above, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+    gl->TextureParameteri(sunlight->above, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+    gl->TextureParameterfv(sunlight->above, GL_TEXTURE_BORDER_COLOR, lit);
+}
+
 static enum status all_put(struct workspace *workspace, struct sunlight_gl *sunlight)
 {
     const struct shadow_light *light = march_shadows_sun(sunlight->shadows);
@@ -185,6 +217,7 @@ static enum status all_put(struct workspace *workspace, struct sunlight_gl *sunl
     if (!status)
         status = texels_put(workspace, sunlight, TERRAIN, light->terrain_m,
                             samples * sizeof *light->terrain_m);
+    above_put(workspace->gl, sunlight);
     return status;
 }
 
@@ -201,6 +234,7 @@ enum status sunlight_gl_update(struct workspace *workspace, struct sunlight_gl *
     sunlight->picture++;
     if (workspace->counted) {
         workspace->tally.shadow_seconds += sunlight->seconds;
+        workspace->tally.shadow_bytes += sunlight->above_bytes;
         for (int i = 0; i < TEXELS; i++)
             workspace->tally.shadow_bytes += sunlight->texels[i].room_bytes;
     }
@@ -283,12 +317,13 @@ enum status sunlight_gl_program(struct workspace *workspace, const struct sunlig
 void sunlight_gl_uniforms(struct workspace *workspace, const struct sunlight_gl *sunlight,
                           GLuint program)
 {
-    enum { UNIT_TERRAIN = 5, UNIT_MAP = 6 };
+    enum { UNIT_TERRAIN = 5, UNIT_MAP = 6, UNIT_ABOVE = 7 };
     struct gl *gl = workspace->gl;
     const struct shadow_light *light = march_shadows_sun(sunlight->shadows);
     const struct shadow_map *map = &light->map;
     const struct terrain *terrain = &sunlight->scene->terrain;
     const bool any = map->size[0] > 0;
+    const struct shadow_ground *ground = march_shadows_ground(sunlight->shadows);
     const float texels = any ? 1 / map->texel_m : 0, depths = any ? 1 / map->depth_m : 0;
     gl->UniformMatrix3fv(gl_uniform(gl, program, "sun_axes"), 1, GL_FALSE, light->frame.axes[0]);
     gl->Uniform3fv(gl_uniform(gl, program, "sun_low"), 1, map->low_m);
@@ -298,6 +333,11 @@ void sunlight_gl_uniforms(struct workspace *workspace, const struct sunlight_gl 
                   light->least_m);
     gl->Uniform2i(gl_uniform(gl, program, "sun_samples"), (GLint)terrain->samples_x,
                   (GLint)terrain->samples_z);
+    gl->Uniform3f(gl_uniform(gl, program, "sun_above_place"), ground->low_m[0], ground->low_m[1],
+                  sunlight->above ? 1 / ground->cell_m : 0);
+    gl->Uniform2f(gl_uniform(gl, program, "sun_above_size"), (float)ground->size[0][0],
+                  (float)ground->size[0][1]);
+    gl->BindTextureUnit(UNIT_ABOVE, sunlight->above);
     gl->BindTextureUnit(UNIT_TERRAIN, sunlight->texels[TERRAIN].texture);
     gl->BindTextureUnit(UNIT_MAP, sunlight->texels[MAP].texture);
 }
