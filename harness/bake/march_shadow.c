@@ -352,6 +352,6 @@ float march_shadows_of_cell(const struct march_shadows *shadows, uint32_t cell, 
 void march_shadows_shade_ground(const struct march_shadows *shadows,
                                 const struct shadow_pixel *pixel, float sun, float rgb[3])
 {
-    shadow_ground_shade(&shadows->ground, &shadows->light, pixel, sun,
-                        shadows->scene->sun.radiance, rgb);
+    shadow_ground_shade(&shadows->ground, &shadows->light, pixel, sun, shadows->scene->sun.radiance,
+                        rgb);
 }
