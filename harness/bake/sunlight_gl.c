@@ -128,7 +128,7 @@ static size_t volume_cells(const struct shadow_volume *volume)
 static enum status volumes_put(struct workspace *workspace, struct sunlight_gl *sunlight)
 {
     const size_t kinds = march_shadows_kinds(sunlight->shadows);
-    const size_t species = sunlight->scene->species_count, turns = species ? kinds / species : 0;
+    const size_t species = sunlight->scene->species_count, turns = species ? kinds / species : 1;
     size_t cells = 0, first = 0;
     for (size_t k = 0; k < kinds; k++)
         cells += volume_cells(march_shadows_volume(sunlight->shadows, k));
