@@ -1,4 +1,4 @@
-/* Plots over the distance of views: the numbers that stand in their data. */
+/* Plots: the numbers that stand in their data. */
 #include "own_folder.h"
 #include "tiny_result.h"
 
@@ -49,10 +49,46 @@ static void test_plots__over_the_distance_are_milliseconds_and_percent_in_its_or
     arena_destroy(arena);
 }
 
+/* A cell of one view, which has a mask where its method draws shadows. */
+static void add_masked(struct arena *arena, struct run *run, const char *method,
+                       const char *options, double seconds)
+{
+    struct result *result = tiny_result(arena, run, method, options, 4, 0);
+    void *values = arena_alloc(arena, 1, result->cell.method->options_size);
+    options_default(result->cell.method->options, values);
+    assert_int_equal(options_parse(result->cell.method->options, options, values, NULL), STATUS_OK);
+    result->effects = method_effects(result->cell.method, values, EFFECTS_ALL);
+    result->scene_effects = EFFECTS_ALL;
+    result->frame_seconds[0] = seconds;
+    result->views_count = 1;
+    result->views = ARENA_NEW(arena, struct result_view);
+    result->views[0].masked = result->effects & EFFECT_SUN_SHADOWS;
+    result->views[0].mask.wrong = 0.02;
+}
+
+/* Billboards of 2 ms take 12 with a map; a map by itself, 35, where polygons take 20. */
+static void
+test_plots__shadows_cost_what_they_add_to_their_own_cell_or_to_the_triangles(void **state)
+{
+    (void)state;
+    struct arena *arena = arena_create(0);
+    struct run *run = tiny_run(arena, 4);
+    add_masked(arena, run, "billboards", "", 0.002);
+    add_masked(arena, run, "billboards", "shadow=map", 0.012);
+    add_masked(arena, run, "shadow-map", "", 0.035);
+    add_masked(arena, run, "polygons", "", 0.020);
+    struct book *book = book_make(arena, run);
+    check_rows(book, plot_masks, "\n2 10 2 2 ");
+    check_rows(book, plot_masks, "\n2 15 2 2 ");
+    arena_destroy(arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_plots__over_the_distance_are_milliseconds_and_percent_in_its_order),
+        cmocka_unit_test(
+            test_plots__shadows_cost_what_they_add_to_their_own_cell_or_to_the_triangles),
     };
     return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }

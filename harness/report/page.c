@@ -238,8 +238,9 @@ static void put_masks(const struct page *page)
     page_text(page, "<h2 id=\"shadows\">Wrong shadows against their price</h2>\n<p>Of methods that "
                     "draw the sun's shadow as a mask: the share of the surface on which it is "
                     "not what rays say, whatever the light and the trees look like. Its price is "
-                    "what a frame takes more than the same triangles without shadows (method "
-                    "polygons), where the run has them.</p>\n");
+                    "what a frame takes more than the same cell without shadows or, of methods "
+                    "that always have them, than the triangles alone (method polygons), where the "
+                    "run has one of them.</p>\n");
     page_figures(page, FIGURE_MASKS, FIGURE_MASKS);
     if (page_has(page, FIGURE_MASKS_DISTANCE))
         page_text(page, "<h3>Wrong shadows against distance</h3>\n");

@@ -1,20 +1,23 @@
 /* The static plot of shadow masks: what is wrong against what shadows cost. */
+#include "report/pairs.h"
 #include "report/plot.h"
 #include "stats/stats.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Draws all triangles in the same light without shadows. */
+/* Draws all triangles in the same light without shadows: what those methods add to that have
+ * shadows alone. */
 static const char unshaded[] = "polygons";
 
 struct masks {
     struct plot plot;
     const struct group *group;
     struct axis x, y;
-    double base_seconds; /* of the method without shadows; 0: the run has none here */
-    double floor;        /* what the truth's noise gives; NaN: far below */
-    bool *on_front;      /* a row of the group */
+    double *bases;  /* seconds of the frame without shadows, a row of the book; 0: none here */
+    bool any_base;  /* of what is drawn */
+    double floor;   /* what the truth's noise gives; NaN: far below */
+    bool *on_front; /* a row of the group */
 };
 
 static bool is_drawn(const struct row *row)
@@ -26,7 +29,8 @@ static bool is_drawn(const struct row *row)
 /* Milliseconds that shadows add; what measures as less than the axis shows stands at its foot. */
 static double cost_ms(const struct masks *masks, const struct row *row, enum column_index column)
 {
-    return fmax(1e3 * (row->values[column] - masks->base_seconds), masks->y.low);
+    const double base = masks->bases[row - masks->plot.book->rows];
+    return fmax(1e3 * (row->values[column] - base), masks->y.low);
 }
 
 static double wrong_percent(const struct masks *masks, const struct row *row)
@@ -48,6 +52,28 @@ static struct axis views_range(const struct row *row)
     return range;
 }
 
+/* Of the same cell without shadows, else of the fastest that only draws the triangles. */
+static void masks_bases(struct masks *masks)
+{
+    const struct book *book = masks->plot.book;
+    const struct group *group = masks->group;
+    double fastest = 0;
+    size_t count;
+    masks->bases = ARENA_ARRAY(book->arena, double, book->rows_count);
+    for (size_t i = 0; i < group->rows_count; i++) {
+        const struct row *row = &book->rows[group->rows[i]];
+        double seconds = row->values[COLUMN_frame_seconds];
+        if (row->ok && strcmp(row->method, unshaded) == 0 && seconds > 0 &&
+            !(fastest > 0 && fastest < seconds))
+            fastest = seconds;
+    }
+    for (size_t i = 0; i < group->rows_count; i++)
+        masks->bases[group->rows[i]] = fastest;
+    const struct shadow_pair *pairs = shadow_pairs(book, group, &count);
+    for (size_t i = 0; i < count; i++)
+        masks->bases[pairs[i].with] = book->rows[pairs[i].without].values[COLUMN_frame_seconds];
+}
+
 static void masks_survey(struct masks *masks)
 {
     const struct book *book = masks->plot.book;
@@ -56,25 +82,21 @@ static void masks_survey(struct masks *masks)
     double *error = ARENA_ARRAY(book->arena, double, group->rows_count);
     masks->on_front = ARENA_ARRAY(book->arena, bool, group->rows_count);
     masks->floor = NAN;
+    masks_bases(masks);
     for (size_t i = 0; i < group->rows_count; i++) {
         const struct row *row = &book->rows[group->rows[i]];
-        double seconds = row->values[COLUMN_frame_seconds];
-        if (row->ok && strcmp(row->method, unshaded) == 0 && seconds > 0 &&
-            !(masks->base_seconds > 0 && masks->base_seconds < seconds))
-            masks->base_seconds = seconds;
-    }
-    for (size_t i = 0; i < group->rows_count; i++) {
-        const struct row *row = &book->rows[group->rows[i]];
+        const double base = masks->bases[group->rows[i]];
         bool drawn = is_drawn(row);
-        cost[i] = drawn ? row->values[COLUMN_frame_seconds] : NAN;
+        cost[i] = drawn ? row->values[COLUMN_frame_seconds] - base : NAN;
         error[i] = drawn ? row->values[COLUMN_mask_wrong] : NAN;
         if (!drawn)
             continue;
         struct axis range = views_range(row);
         axis_add(&masks->x, range.low);
         axis_add(&masks->x, range.high);
-        axis_add(&masks->y, 1e3 * (cost[i] - masks->base_seconds));
-        axis_add(&masks->y, 1e3 * (row->values[COLUMN_frame_seconds_high] - masks->base_seconds));
+        masks->any_base |= base > 0;
+        axis_add(&masks->y, 1e3 * cost[i]);
+        axis_add(&masks->y, 1e3 * (row->values[COLUMN_frame_seconds_high] - base));
         masks->floor = fmax(masks->floor, 100 * row->values[COLUMN_mask_floor]);
     }
     stats_pareto(cost, error, group->rows_count, masks->on_front);
@@ -175,7 +197,7 @@ enum status plot_masks(const struct book *book, const struct group *group, const
     plot_open(plot, book, folder, arena_printf(book->arena, "masks-%s", group->slug), group->title);
     masks_survey(&masks);
     plot_axes(plot, &masks.x, &masks.y, "share of the surface whose shadow is wrong [%]",
-              masks.base_seconds > 0 ? "time a frame over polygons' [ms]" : "time a frame [ms]");
+              masks.any_base ? "time a frame that shadows add [ms]" : "time a frame [ms]");
     masks_numbers(&masks); /* before the first curve */
     size_t row, step;
     for (size_t m = 0; m < book->methods_count; m++)
