@@ -8,19 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct result *add(struct arena *arena, struct run *run, const char *method,
-                          const char *options, int round, double seconds)
-{
-    struct result *result = tiny_result(arena, run, method, options, 4, round);
-    void *values = arena_alloc(arena, 1, result->cell.method->options_size);
-    options_default(result->cell.method->options, values);
-    assert_int_equal(options_parse(result->cell.method->options, options, values, NULL), STATUS_OK);
-    result->effects = method_effects(result->cell.method, values, EFFECTS_ALL);
-    result->scene_effects = EFFECTS_ALL;
-    result->frame_seconds[0] = seconds;
-    return result;
-}
-
 static struct shadow_pair *found(struct arena *arena, struct run *run, struct book **book,
                                  size_t *count)
 {
@@ -55,7 +42,7 @@ static void test_pairs__a_switch_and_what_depends_on_it_may_differ_and_nothing_e
     struct book *book;
     size_t count;
     for (size_t i = 0; i < sizeof cells / sizeof *cells; i++)
-        add(arena, run, cells[i][0], cells[i][1], 0, 0.01);
+        tiny_drawn(arena, run, cells[i][0], cells[i][1], 0, 0.01);
     const struct shadow_pair *pairs = found(arena, run, &book, &count);
     assert_int_equal(count, sizeof wanted / sizeof *wanted);
     for (size_t i = 0; i < count; i++) {
@@ -74,8 +61,8 @@ static void test_pairs__other_levels_formats_effects_and_failures_part_cells(voi
         struct run *run = tiny_run(arena, 2);
         struct book *book;
         size_t count;
-        struct result *without = add(arena, run, "polygons", "", 0, 0.01);
-        struct result *with = add(arena, run, "polygons", "shadow=map", 0, 0.02);
+        struct result *without = tiny_drawn(arena, run, "polygons", "", 0, 0.01);
+        struct result *with = tiny_drawn(arena, run, "polygons", "shadow=map", 0, 0.02);
         if (part == 1)
             with->cell.lod = LOD_HIGH;
         if (part == 2)
@@ -102,8 +89,8 @@ static void test_pairs__the_price_is_of_times_of_the_same_round(void **state)
     size_t count;
     static const double seconds[3][2] = {{0.02, 0.06}, {0.01, 0.05}, {0.01, 0.04}};
     for (int round = 0; round < 3; round++) {
-        add(arena, run, "polygons", "", round, seconds[round][0]);
-        add(arena, run, "polygons", "shadow=map", round, seconds[round][1]);
+        tiny_drawn(arena, run, "polygons", "", round, seconds[round][0]);
+        tiny_drawn(arena, run, "polygons", "shadow=map", round, seconds[round][1]);
     }
     const struct shadow_pair *pairs = found(arena, run, &book, &count);
     assert_int_equal(count, 1);
@@ -122,7 +109,7 @@ static void test_pairs__the_page_sets_both_errors_and_the_price_beside_each_othe
     for (int with = 0; with < 2; with++) {
         char *text = NULL;
         size_t size = 0;
-        add(arena, run, "polygons", with ? "shadow=map" : "", 0, with ? 0.0515 : 0.0206);
+        tiny_drawn(arena, run, "polygons", with ? "shadow=map" : "", 0, with ? 0.0515 : 0.0206);
         struct result *result = &run->results[with];
         result->views_count = 1;
         result->views = ARENA_NEW(arena, struct result_view);

@@ -53,13 +53,7 @@ static void test_plots__over_the_distance_are_milliseconds_and_percent_in_its_or
 static void add_masked(struct arena *arena, struct run *run, const char *method,
                        const char *options, double seconds)
 {
-    struct result *result = tiny_result(arena, run, method, options, 4, 0);
-    void *values = arena_alloc(arena, 1, result->cell.method->options_size);
-    options_default(result->cell.method->options, values);
-    assert_int_equal(options_parse(result->cell.method->options, options, values, NULL), STATUS_OK);
-    result->effects = method_effects(result->cell.method, values, EFFECTS_ALL);
-    result->scene_effects = EFFECTS_ALL;
-    result->frame_seconds[0] = seconds;
+    struct result *result = tiny_drawn(arena, run, method, options, 0, seconds);
     result->views_count = 1;
     result->views = ARENA_NEW(arena, struct result_view);
     result->views[0].masked = result->effects & EFFECT_SUN_SHADOWS;

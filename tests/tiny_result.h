@@ -42,4 +42,20 @@ static inline struct result *tiny_result(struct arena *arena, struct run *run, c
     return result;
 }
 
+/* The same of four trees and a built-in method, whose frame took so long and which drew what its
+ * options draw of all effects, as the scene asks. */
+static inline struct result *tiny_drawn(struct arena *arena, struct run *run, const char *method,
+                                        const char *options, int round, double seconds)
+{
+    struct result *result = tiny_result(arena, run, method, options, 4, round);
+    const struct option *table = result->cell.method->options;
+    void *values = arena_alloc(arena, 1, result->cell.method->options_size);
+    options_default(table, values);
+    assert_int_equal(options_parse(table, options, values, NULL), STATUS_OK);
+    result->effects = method_effects(result->cell.method, values, EFFECTS_ALL);
+    result->scene_effects = EFFECTS_ALL;
+    result->frame_seconds[0] = seconds;
+    return result;
+}
+
 #endif
