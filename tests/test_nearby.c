@@ -56,6 +56,16 @@ static struct view view_from(const struct fixture *f, const struct scene *scene,
     return tree_view(scene, 0.3f, 0, distance_m, 1.6f * distance_m);
 }
 
+/* From where so much of a tree is shown by its triangles. */
+static struct pictures draw_shares(struct fixture *f, const char *method, const char *options,
+                                   struct scene *scene, const float shares[VIEWS_MOST],
+                                   struct view views[VIEWS_MOST])
+{
+    for (int v = 0; v < VIEWS_MOST; v++)
+        views[v] = view_from(f, scene, exp2f(0.5f * (1 - shares[v])));
+    return draw(f, method, options, scene, views, VIEWS_MOST);
+}
+
 /* All of it within a radius, nothing of it half an octave farther, between them in between. */
 static void claim_gradual(struct fixture *f, const char *method, const char *options)
 {
@@ -63,9 +73,7 @@ static void claim_gradual(struct fixture *f, const char *method, const char *opt
     static const double most[VIEWS_MOST][2] = {{0.05, 1.05}, {0.75, 0.75}, {1.05, 0.05}};
     struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
     struct view views[VIEWS_MOST];
-    for (int v = 0; v < VIEWS_MOST; v++)
-        views[v] = view_from(f, scene, exp2f(0.5f * (1 - shares[v])));
-    struct pictures pictures = draw(f, method, options, scene, views, VIEWS_MOST);
+    struct pictures pictures = draw_shares(f, method, options, scene, shares, views);
     for (int v = 0; v < VIEWS_MOST; v++) {
         const struct frame *const *shown = pictures.of[v];
         double whole = apart(shown[SHOWN_SLICES], shown[SHOWN_TRIANGLES]);
@@ -93,9 +101,7 @@ static void claim_covers(struct fixture *f, const char *method, const char *opti
     static const float shares[VIEWS_MOST] = {0.25f, 0.5f, 0.75f};
     struct scene *scene = tree_scene(f->arena, f->plant, 1, 1);
     struct view views[VIEWS_MOST];
-    for (int v = 0; v < VIEWS_MOST; v++)
-        views[v] = view_from(f, scene, exp2f(0.5f * (1 - shares[v])));
-    struct pictures pictures = draw(f, method, options, scene, views, VIEWS_MOST);
+    struct pictures pictures = draw_shares(f, method, options, scene, shares, views);
     for (int v = 0; v < VIEWS_MOST; v++) {
         double traced = tree_mean(tree_reference(f->arena, scene, lit, &views[v]), 3);
         double bias[SHOWN], most;
